@@ -1,0 +1,57 @@
+#pragma once
+/// The bodies of one haptic step: the links of the tool and the neighbors of the snapshot, with their convex pieces.
+
+#include <haptics/core/contact/surface.hpp>
+#include <haptics/core/geometry/convex.hpp>
+#include <haptics/core/types.hpp>
+
+#include <array>
+#include <cstdint>
+
+namespace haptics {
+
+/// Who moves a body.
+enum class BodyKind : std::uint8_t {
+    tool,      ///< a link of what the user holds; the local model moves it
+    fixed,     ///< never moves
+    kinematic, ///< moves by the scene's will, cannot be pushed
+    movable,   ///< has mass and can be pushed
+};
+
+/// One body. Poses and velocities refer to the body's center of mass.
+struct Body {
+    /// Persistent id, unique in a snapshot; the scene's instance id for neighbors, the link number for the tool.
+    std::uint64_t id{0};
+    BodyKind kind{BodyKind::fixed};
+    Pose pose{0.0, 0.0, 0.0};
+    Twist velocity{0.0, 0.0, 0.0};
+    /// Mass in kg and moment of inertia about the center of mass in kg m^2 (movable bodies only, > 0).
+    double mass{0.0};
+    double inertia{0.0};
+    Surface surface;
+    /// Range of this body's pieces in the piece array.
+    std::int32_t first_piece{0};
+    std::int32_t piece_count{0};
+};
+
+/// One convex piece with an id that stays the same while the scene keeps the shape.
+struct Piece {
+    std::uint32_t id{0};
+    /// Acts only on what comes from the side of the local direction `one_way_normal` (body axes).
+    bool one_way{false};
+    Vec2 one_way_normal{0.0, 1.0};
+    Convex convex;
+};
+
+inline constexpr int k_max_bodies = 128;
+inline constexpr int k_max_pieces = 256;
+
+/// Pointer-free set of bodies.
+struct BodySet {
+    std::int32_t body_count{0};
+    std::int32_t piece_count{0};
+    std::array<Body, k_max_bodies> body;
+    std::array<Piece, k_max_pieces> piece;
+};
+
+} // namespace haptics

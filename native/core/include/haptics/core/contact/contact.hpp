@@ -1,0 +1,65 @@
+#pragma once
+/// A contact patch: all points where one body touches the matter of another along one plane. A patch, not a vertex, carries the
+/// stiffness, the contact state and the friction anchor, so that a wall feels the same however it is cut into shapes.
+
+#include <haptics/core/contact/surface.hpp>
+#include <haptics/core/types.hpp>
+
+#include <array>
+#include <cstdint>
+
+namespace haptics {
+
+/// States of section 3.2 of the paper (continuous contact is either sticking or sliding).
+enum class ContactState : std::uint8_t { none, colliding, sticking, sliding };
+
+/// One point of a patch.
+struct PatchPoint {
+    /// Scene position on the surface of body b, m.
+    Vec2 position{0.0, 0.0};
+    /// Signed distance along the normal, m; negative is overlap.
+    double gap{0.0};
+    /// Share of the patch's stiffness and damping; the shares of a patch add up to 1.
+    double weight{1.0};
+};
+
+/// What a patch remembers from step to step.
+struct PatchMemory {
+    ContactState state{ContactState::none};
+    /// Tangential displacement of the friction spring from its anchor, m (along the tangent).
+    double slip_spring{0.0};
+    /// Tool and surface have touched without a break for this many steps.
+    std::uint32_t age{0};
+    /// Normal and tangential force of the last step, N (telemetry).
+    double normal_force{0.0};
+    double tangent_force{0.0};
+};
+
+/// Bodies in a patch are indices into the step's body list: tool links first, then the neighbors of the snapshot.
+struct Patch {
+    std::int32_t body_a{0};
+    std::int32_t body_b{0};
+    /// Persistent ids of the touching features, stable across geometry updates (see detection.hpp).
+    std::uint64_t feature_a{0};
+    std::uint64_t feature_b{0};
+    /// Unit normal in scene axes, out of body b into body a. The tangent is perpendicular(normal).
+    Vec2 normal{0.0, 1.0};
+    std::int32_t point_count{0};
+    std::array<PatchPoint, 2> point;
+    /// Combined surface of the two sides.
+    Surface surface;
+    PatchMemory memory;
+};
+
+/// Most patches of one step; what exceeds it is counted as overflow, the deepest are kept.
+inline constexpr int k_max_patches = 64;
+
+/// Fixed-capacity list of the step's patches.
+struct PatchList {
+    std::int32_t count{0};
+    /// Patches found but dropped since the start (a reported fault when it grows).
+    std::uint64_t overflow{0};
+    std::array<Patch, k_max_patches> patch;
+};
+
+} // namespace haptics

@@ -1,0 +1,46 @@
+#pragma once
+/// What the haptic step needs of a device, real or simulated.
+
+#include <haptics/core/types.hpp>
+
+#include <cstdint>
+
+namespace haptics {
+
+/// One reading of the device, in the device's own frame (m, rad, N, s).
+struct DeviceReading {
+    /// Handle pose as the encoders give it (theta 0 when the device has two freedoms).
+    Pose pose{0.0, 0.0, 0.0};
+    /// Handle velocity when the device measures it, otherwise see has_velocity.
+    Twist velocity{0.0, 0.0, 0.0};
+    bool has_velocity{false};
+    /// Force of the hand on the handle when the device measures it.
+    Wrench hand_force{0.0, 0.0, 0.0};
+    bool has_hand_force{false};
+    /// Buttons, bit i is button i.
+    std::uint32_t buttons{0};
+    /// Grows by one with every new sample; unchanged means that the sample is the last one again.
+    std::uint64_t sequence{0};
+};
+
+/// A device seen from the haptic loop. Neither call allocates, locks, logs or throws; neither blocks longer than the device needs.
+class DevicePort {
+  public:
+    virtual ~DevicePort() = default;
+    DevicePort() = default;
+    DevicePort(const DevicePort&) = delete;
+    DevicePort& operator=(const DevicePort&) = delete;
+
+    /// Takes the newest sample. False when there is none (unplugged, late): `reading` is then left as it was.
+    virtual bool read(DeviceReading& reading) = 0;
+    /// Commands a force at the handle (N, N, N m; device frame). Comes straight from the output gate.
+    virtual void write(const Wrench& force) = 0;
+    /// Lets simulated devices pass the time between two steps (s); real ones do nothing.
+    virtual void advance(double /*dt*/) {}
+    /// Effective mass matrix at the handle for the given pose, kg, kg m^2.
+    [[nodiscard]] virtual Mat3 handle_mass(const Pose& pose) const = 0;
+    /// 2 or 3.
+    [[nodiscard]] virtual int freedoms() const = 0;
+};
+
+} // namespace haptics
