@@ -1,0 +1,35 @@
+# How every room is compiled. Third-party headers are SYSTEM includes and escape the warnings.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG")
+set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g -fno-omit-frame-pointer")
+set(CMAKE_CXX_FLAGS_DEBUG "-O0 -g")
+
+set(HAPTICS_SANITIZE "" CACHE STRING "Sanitizers, as for -fsanitize=")
+
+find_program(HAPTICS_CCACHE ccache)
+if(HAPTICS_CCACHE)
+    set(CMAKE_CXX_COMPILER_LAUNCHER "${HAPTICS_CCACHE}")
+endif()
+
+add_library(haptics_options INTERFACE)
+target_compile_options(haptics_options INTERFACE
+    -Wall -Wextra -Wpedantic -Werror -Wshadow -Wconversion -Wdouble-promotion -Wnon-virtual-dtor
+    -Woverloaded-virtual -Wold-style-cast -Wcast-align -Wunused -Wformat=2 -Wimplicit-fallthrough
+    # the same bits from every build and compiler: no fused multiply-add behind our back
+    -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # a unique symbol would keep the library mapped, and the editor would run the old code after a reload
+    target_compile_options(haptics_options INTERFACE -fno-gnu-unique -Wduplicated-cond -Wlogical-op)
+endif()
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    target_compile_options(haptics_options INTERFACE -march=x86-64)
+endif()
+if(HAPTICS_SANITIZE)
+    target_compile_options(haptics_options INTERFACE -fsanitize=${HAPTICS_SANITIZE} -fno-sanitize-recover=all)
+    target_link_options(haptics_options INTERFACE -fsanitize=${HAPTICS_SANITIZE})
+endif()
