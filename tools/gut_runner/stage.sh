@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# Makes a project that sees our files through links and holds exactly one GutTest: our runner, or GUT itself.
+#   stage.sh ours|gut [FOLDER]    FOLDER stands in for tests/ (the runner's own tests use that)
+# GUT is taken from addons/gut, or from $GUT_FOLDER to try another copy of it.
+# Prints the project's folder, build/staging/<kind> or build/staging/self_test_<kind>.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
+root=$(cd "$here/../.." && pwd -P)
+kind=${1:?ours or gut} tests=${2:-}
+project=$root/build/staging/${tests:+self_test_}$kind
+
+mkdir -p "$project/addons"
+touch "$root/build/.gdignore"
+find "$project" -mindepth 1 -maxdepth 1 -type l -delete
+find "$project/addons" -mindepth 1 -maxdepth 1 -type l -delete
+for folder in "$project"/addons/gut "$project"/addons/gut_host; do
+    [[ ! -d $folder ]] || find "$folder" -type l -delete
+done
+
+# ours: all that the project's own editor would see
+for entry in "$root"/*; do
+    name=${entry##*/}
+    case $name in addons | build | project.godot | *.md | LICENSE | Makefile | CMake*) continue ;; esac
+    [[ $name != tests || -z $tests ]] || continue
+    [[ -d $entry && -e $entry/.gdignore ]] || ln -s "$entry" "$project/$name"
+done
+for entry in "$root"/addons/*; do
+    [[ ${entry##*/} == gut ]] || ln -s "$entry" "$project/addons/${entry##*/}"
+done
+[[ -z $tests ]] || ln -s "$tests" "$project/tests"
+
+# what Godot left beside a script of ours that is gone
+find "$project/addons" -mindepth 2 -name '*.uid' | while IFS= read -r uid; do
+    [[ -e $here/addon/$(basename "$uid" .uid) || -e $here/editor_host/$(basename "$uid" .uid) ||
+        -e $here/real_gut/$(basename "$uid" .uid) ]] || rm -f "$uid"
+done
+
+# the runner: one of the two. Folders of links, so that Godot's .uid files land here and not beside our sources.
+link_files() {
+    mkdir -p "$2"
+    find "$1" -maxdepth 1 -type f ! -name '*.uid' -exec ln -s -t "$2" {} +
+}
+link_files "$here/editor_host" "$project/addons/gut_host"
+if [[ $kind == gut ]]; then
+    [[ -f ${GUT_FOLDER:-$root/addons/gut}/gut_cmdln.gd ]] || {
+        echo "GUT is not in addons/gut: install it there from the editor's Asset Library (it is not committed)" >&2
+        exit 2
+    }
+    rm -rf "$project/addons/gut"
+    ln -s "${GUT_FOLDER:-$root/addons/gut}" "$project/addons/gut"
+    link_files "$here/real_gut" "$project/addons/gut_host"
+else
+    link_files "$here/addon" "$project/addons/gut"
+    ln -s "$here/known_noise.txt" "$project/addons/gut/known_noise.txt"
+fi
+
+python3 "$here/stage_settings.py" "$kind" "$root/project.godot" "$project/project.godot"
+# without this list the first import of an extension aborts at exit
+if [[ -e $root/addons/haptics/haptics.gdextension ]]; then
+    mkdir -p "$project/.godot"
+    echo "res://addons/haptics/haptics.gdextension" >"$project/.godot/extension_list.cfg"
+fi
+echo "$project"

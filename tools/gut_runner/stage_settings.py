@@ -1,0 +1,32 @@
+#!/usr/bin/env python3
+"""Copies project.godot for a staging project: our editor host is enabled, our runner is checked like our other scripts."""
+import pathlib
+import re
+import sys
+
+HOST = '"res://addons/gut_host/plugin.cfg"'
+
+
+def enable_host(text: str) -> str:
+    enabled = re.compile(r"^enabled=PackedStringArray\((.*)\)$", re.MULTILINE)
+    if enabled.search(text):
+        return enabled.sub(lambda found: f"enabled=PackedStringArray({', '.join(filter(None, [found[1], HOST]))})", text)
+    return f"{text.rstrip()}\n\n[editor_plugins]\n\nenabled=PackedStringArray({HOST})\n"
+
+
+def check_runner(text: str, kind: str) -> str:
+    folders = {"res://addons/gut_host": 1, "res://addons/gut": 1 if kind == "ours" else 0}
+    rules = "".join(f'"{folder}": {decision},\n' for folder, decision in folders.items())
+    return text.replace("warnings/directory_rules={\n", "warnings/directory_rules={\n" + rules)
+
+
+def main() -> None:
+    kind, source, target = sys.argv[1:]
+    text = check_runner(enable_host(pathlib.Path(source).read_text(encoding="utf-8")), kind)
+    path = pathlib.Path(target)
+    if not path.exists() or path.read_text(encoding="utf-8") != text:
+        path.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
