@@ -57,6 +57,7 @@ void* __libc_realloc(void* block, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
 void __libc_free(void* block);
 
+#pragma GCC visibility push(default)
 void* malloc(std::size_t size) noexcept {
     count_allocation("malloc");
     return __libc_malloc(size);
@@ -94,6 +95,7 @@ void free(void* block) noexcept {
         __libc_free(block);
     }
 }
+#pragma GCC visibility pop
 }
 
 #endif
@@ -125,6 +127,7 @@ void give(void* block) noexcept {
 
 } // namespace
 
+#pragma GCC visibility push(default)
 void* operator new(std::size_t size) {
     return take(size, 0, true);
 }
@@ -173,5 +176,7 @@ void operator delete(void* block, std::size_t, std::align_val_t) noexcept {
 void operator delete[](void* block, std::size_t, std::align_val_t) noexcept {
     give(block);
 }
+
+#pragma GCC visibility pop
 
 #endif
