@@ -1,0 +1,17 @@
+#pragma once
+/// Forward dynamics by the method that fits the linkage (LinkageModel::kernel).
+
+#include <haptics/core/dynamics/articulated.hpp>
+
+namespace haptics {
+
+/// Refreshes from `data` what forward_dynamics() reads: rotations for the chain kernels, positions too for
+/// the others.
+void prepare_dynamics(const LinkageModel& model, LinkageData& data);
+
+/// acceleration = D^-1 (force - C - G). After prepare_dynamics() or update_kinematics(). `workspace` is
+/// written by the articulated kernel only; use factorize() where D^-1 is needed beside.
+void forward_dynamics(const LinkageModel& model, const LinkageData& data, const JointVector& force,
+                      ArticulatedFactor& workspace, JointVector& acceleration);
+
+} // namespace haptics
