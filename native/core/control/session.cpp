@@ -1,0 +1,214 @@
+// The haptic step.
+//
+// The gate comes after the model, so what it takes away is known one step late: `share_`, the part of the last command that was let through, scales
+// coupling and hand force in the next step, so that device and proxy always receive opposite forces. The command itself is computed
+// at full share; otherwise the gate's cut would be applied twice.
+//
+// Impulses. If device and proxy were one body, a collision that changes the grip's velocity by dv would need M_d dv on the device's side
+// (with the S form: L = S J_h D^-1 P = M_d dv for the combined impulse P). Eq. (7) with the proxy's own inertia gives the same for equal masses,
+// throws a device that is lighter than the proxy back, and hardly stops one that is heavier. So M_d dv is what the hand receives.
+
+#include <haptics/core/control/session.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptics {
+namespace {
+
+double pass_fraction(const Wrench& command, const Wrench& applied, double last) {
+    const double size = command.squaredNorm();
+    if (size < 1e-18)
+        return last;
+    return std::clamp(applied.dot(command) / size, 0.0, 1.0);
+}
+
+double spring_energy(const Vec3& stiffness, const Wrench& force) {
+    double energy = 0.0;
+    for (int i = 0; i < 3; ++i)
+        energy += stiffness(i) > 0.0 ? 0.5 * force(i) * force(i) / stiffness(i) : 0.0;
+    return energy;
+}
+
+} // namespace
+
+Session::Session(const SessionSettings& settings, const Model& model, const OutputGate& gate, DevicePort& device,
+                 const Pose& start)
+    : settings_(settings)
+    , model_(std::make_unique<Model>(model))
+    , data_(std::make_unique<Data>())
+    , gate_(gate)
+    , device_(device)
+    , velocity_(settings.reading_error) {
+    reset(*model_, *data_, start);
+    arm_wanted_ = settings.arm_at_start;
+    mobility_ = grip_mobility(*model_, *data_);
+    read_device();
+    device_mass_ = settings_.mapping.mass_to_scene(device_.handle_mass(reading_.pose));
+    gains_ = settings_.gains;
+    if (gains_.stiffness.isZero(0.0) && gains_.damping.isZero(0.0))
+        gains_ = default_gains(device_mass_, settings_.step, settings_.device_delay);
+    hold(settings_.hold_at_start);
+    report_.grip = grip_pose(model_->tool.grip, data_->pose);
+    report_.proxy = data_->pose;
+    report_.device = handle_ + grab_offset_;
+    report_.held = held_;
+}
+
+void Session::hold(bool held) {
+    held_ = held;
+    grab_offset_ = grip_pose(model_->tool.grip, data_->pose) - handle_;
+    impulses_.drop();
+}
+
+void Session::arm() {
+    arm_wanted_ = true;
+}
+
+void Session::disarm() {
+    arm_wanted_ = false;
+    gate_.disarm();
+}
+
+void Session::read_device() {
+    const std::uint64_t last = reading_.sequence;
+    missing_ = !device_.read(reading_);
+    fresh_ = !missing_ && (reading_.sequence != last || last == 0);
+    if (fresh_) {
+        const Twist twist = reading_.has_velocity ? reading_.velocity : velocity_.update(reading_.pose, settings_.step);
+        handle_velocity_ = settings_.mapping.twist_to_scene(twist);
+        handle_ = settings_.mapping.to_scene(reading_.pose);
+    }
+    hand_force_ = reading_.has_hand_force ? settings_.mapping.wrench_to_scene(reading_.hand_force) : Wrench(Wrench::Zero());
+}
+
+void Session::run_model() {
+    const double h = settings_.step;
+    if (settings_.coupling == Coupling::direct) {
+        const Pose center = center_pose(model_->tool.grip, handle_ + grab_offset_);
+        Twist velocity = handle_velocity_;
+        const Vec2 arm = center.head<2>() - (handle_ + grab_offset_).head<2>();
+        velocity.head<2>() = velocity_at(handle_velocity_, arm);
+        step_direct(*model_, *data_, center, velocity, h, output_);
+        return;
+    }
+    HandInput hand;
+    hand.held = held_;
+    hand.target = handle_ + grab_offset_ + h * handle_velocity_;
+    hand.target_velocity = handle_velocity_;
+    hand.stiffness = gains_.stiffness;
+    hand.damping = gains_.damping;
+    hand.max_force = gate_.limits().max_force * settings_.mapping.scale;
+    hand.max_torque = gate_.limits().max_torque;
+    hand.share = share_;
+    combined_ = combined_mass(mobility_, device_mass_);
+    if (held_ && settings_.coupling == Coupling::four_channel)
+        hand.force = share_ * (combined_ * mobility_ * hand_force_);
+    haptics::step(*model_, *data_, hand, h, output_);
+    mobility_ = output_.grip_mobility;
+}
+
+Wrench Session::command() {
+    if (!held_ && settings_.coupling != Coupling::direct) {
+        impulses_.drop();
+        return Wrench::Zero();
+    }
+    if (settings_.coupling == Coupling::direct)
+        return output_.environment;
+    Wrench force = -output_.full_coupling;
+    if (settings_.coupling == Coupling::four_channel)
+        force += combined_ * output_.grip_acceleration;
+    if (!output_.grip_velocity_jump.isZero(0.0))
+        impulses_.demand(device_mass_ * output_.grip_velocity_jump);
+    if (output_.contacts == 0 && output_.colliding == 0 && output_.grip_velocity_jump.isZero(0.0))
+        impulses_.drop();
+    const SafetyLimits& limits = gate_.limits();
+    // what the other channels leave of the device's force
+    const double room = limits.max_force / settings_.mapping.scale - force.head<2>().norm();
+    report_.impulse_force = impulses_.deliver(settings_.step, room, limits.max_torque - std::abs(force.z()));
+    return force + report_.impulse_force;
+}
+
+void Session::step() {
+    read_device();
+    if (fresh_) {
+        coupling_energy_ = spring_energy(gains_.stiffness, output_.coupling);
+        ledger_.book(reading_.pose, coupling_energy_);
+    }
+    device_mass_ = settings_.mapping.mass_to_scene(device_.handle_mass(reading_.pose));
+    run_model();
+    const Wrench wanted = settings_.mapping.wrench_to_device(command());
+    const Twist device_twist = settings_.mapping.twist_to_device(handle_velocity_);
+    if (arm_wanted_ && !gate_.armed() && gate_.faults() == Fault::none) {
+        arm_result_ = gate_.arm(output_.contacts > 0);
+        if (arm_result_ == ArmResult::armed) {
+            hold(held_); // the coupling starts without tension
+            ledger_.reset(reading_.pose);
+        }
+    }
+    const GateOutput gated = gate_.apply(wanted, reading_.pose, device_twist, settings_.step);
+    share_ = gate_.armed() ? pass_fraction(wanted, gated.applied, share_) : 0.0;
+    device_.write(gated.applied);
+    ledger_.set_force(gated.applied);
+    device_.advance(settings_.step);
+    write_report(gated, wanted);
+}
+
+void Session::write_report(const GateOutput& gated, const Wrench& wanted) {
+    const Mapping& map = settings_.mapping;
+    HapticReport& r = report_;
+    r.step = data_->step;
+    r.time = data_->time;
+    r.device = handle_ + grab_offset_;
+    r.device_velocity = handle_velocity_;
+    r.proxy = data_->pose;
+    r.grip = grip_pose(model_->tool.grip, data_->pose);
+    r.velocity = data_->velocity;
+    r.force = map.wrench_to_scene(gated.applied);
+    r.command = map.wrench_to_scene(wanted);
+    r.contact = output_.contact;
+    r.coupling = output_.coupling;
+    r.hand = hand_force_;
+    r.impulse_demanded = impulses_.demanded();
+    r.impulse_delivered = impulses_.delivered();
+    r.impulse_dropped = impulses_.dropped();
+    r.contacts = output_.contacts;
+    r.colliding = output_.colliding;
+    r.sticking = output_.sticking;
+    r.sliding = output_.sliding;
+    r.max_penetration = output_.max_penetration;
+    r.energy_injected = ledger_.injected();
+    r.held = held_;
+    r.armed = gate_.armed();
+    r.gate = gated.flags;
+    r.faults = gated.faults;
+    r.fallbacks += output_.fell_back ? 1U : 0U;
+    r.patch_overflow = data_->patches.overflow;
+    r.movable_overflow = data_->movable_overflow;
+    r.reading_missing = missing_;
+    r.buttons = reading_.buttons;
+    r.contact_count = 0;
+    for (int i = 0; i < data_->patches.count && r.contact_count < HapticReport::k_max_contacts; ++i) {
+        const Patch& p = data_->patches.patch[static_cast<std::size_t>(i)];
+        if (p.memory.state == ContactState::none || p.body_b < data_->tool.body_count)
+            continue;
+        ContactReport& c = r.contact_list[static_cast<std::size_t>(r.contact_count++)];
+        c.body = data_->neighbors.body[static_cast<std::size_t>(p.body_b - data_->tool.body_count)].id;
+        c.state = p.memory.state;
+        c.normal = p.normal;
+        c.normal_force = p.memory.normal_force;
+        c.tangent_force = p.memory.tangent_force;
+        c.position.setZero();
+        c.penetration = 0.0;
+        for (int k = 0; k < p.point_count; ++k) {
+            const PatchPoint& point = p.point[static_cast<std::size_t>(k)];
+            c.position += point.weight * point.position;
+            c.penetration = std::max(c.penetration, -point.gap);
+        }
+    }
+    r.movable_count = data_->movable_count;
+    for (int i = 0; i < data_->movable_count; ++i)
+        r.movable[static_cast<std::size_t>(i)] = data_->movable[static_cast<std::size_t>(i)].belief;
+}
+
+} // namespace haptics

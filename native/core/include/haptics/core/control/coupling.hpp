@@ -1,0 +1,30 @@
+#pragma once
+/// How device and proxy are tied together.
+
+#include <haptics/core/types.hpp>
+
+#include <cstdint>
+
+namespace haptics {
+
+/// What is exchanged between device and proxy.
+enum class Coupling : std::uint8_t {
+    four_channel,     ///< positions and forces, both ways (the paper's controller)
+    virtual_coupling, ///< positions only: a spring-damper between device and proxy
+    direct,           ///< no proxy: contact forces at the device's own pose (baseline)
+};
+
+/// Spring and damper between handle and grip, per freedom.
+struct CouplingGains {
+    Vec3 stiffness{0.0, 0.0, 0.0}; ///< N/m, N/m, N m/rad
+    Vec3 damping{0.0, 0.0, 0.0};   ///< N s/m, N s/m, N m s/rad
+};
+
+/// Largest coupling that the sampled loop holds with a comfortable margin (derivation in coupling.cpp).
+/// `device_mass` is the handle's mass matrix in scene axes, `step` the loop's period in s, `delay` what the device adds, in s.
+CouplingGains default_gains(const Mat3& device_mass, double step, double delay);
+
+/// S = (J_h D^-1 J_h^T + M_d^-1)^-1: what device and proxy weigh together, seen at the grip. Finite where J_h D^-1 J_h^T is singular.
+Mat3 combined_mass(const Mat3& grip_mobility, const Mat3& device_mass);
+
+} // namespace haptics

@@ -1,0 +1,103 @@
+#pragma once
+/// One haptic step from device to device: read, map, local model, control, output gate, write.
+
+#include <haptics/core/control/coupling.hpp>
+#include <haptics/core/control/device_port.hpp>
+#include <haptics/core/control/impulse_channel.hpp>
+#include <haptics/core/control/mapping.hpp>
+#include <haptics/core/control/report.hpp>
+#include <haptics/core/local_model/local_model.hpp>
+#include <haptics/core/safety/energy_ledger.hpp>
+#include <haptics/core/safety/output_gate.hpp>
+#include <haptics/core/safety/velocity_estimator.hpp>
+
+#include <memory>
+
+namespace haptics {
+
+struct SessionSettings {
+    /// Period of the loop, s, 1e-4 to 4e-3.
+    double step{0.001};
+    Coupling coupling{Coupling::four_channel};
+    Mapping mapping;
+    /// Coupling gains; all zero chooses default_gains.
+    CouplingGains gains;
+    /// Delay that the device adds, s, >= 0; used to choose the gains.
+    double device_delay{0.0};
+    /// Largest reading error per coordinate (half an encoder step), m, m, rad; used to estimate velocity.
+    Vec3 reading_error{5e-6, 5e-6, 5e-5};
+    /// Arm by itself as soon as the handle rests in free space. Faults still need a re-arm.
+    bool arm_at_start{true};
+    /// The tool is held from the start.
+    bool hold_at_start{true};
+};
+
+/// Owns the local model's data and the controller's state; uses a device and a gate. Loop thread only, but for the constructor.
+class Session {
+  public:
+    /// Sets everything aside (allocates). `start` is the pose of the tool's center of mass. `device` outlives the session.
+    Session(const SessionSettings& settings, const Model& model, const OutputGate& gate, DevicePort& device, const Pose& start);
+
+    /// Takes a newer neighborhood.
+    void take(const Neighborhood& neighborhood) { take_neighborhood(neighborhood, *data_); }
+    /// One step of the loop's period. Allocation-free, bounded, never throws.
+    void step();
+
+    /// The hand takes hold of the tool (the offset between handle and grip freezes, so the force starts at zero) or lets go.
+    void hold(bool held);
+    /// Asks the gate to arm; the answer is in the next report's `armed` and in `arm_result()`.
+    void arm();
+    void disarm();
+    /// Latches a fault found elsewhere.
+    void raise(Fault fault) { gate_.raise(fault); }
+    /// Fades forces out or back in within 50 ms (pause, a scene that stalls).
+    void set_paused(bool paused) { gate_.set_paused(paused); }
+
+    [[nodiscard]] const HapticReport& report() const { return report_; }
+    /// Events and details of the last step.
+    [[nodiscard]] const StepOutput& output() const { return output_; }
+    [[nodiscard]] ArmResult arm_result() const { return arm_result_; }
+    [[nodiscard]] const SessionSettings& settings() const { return settings_; }
+    [[nodiscard]] const Model& model() const { return *model_; }
+    [[nodiscard]] const CouplingGains& gains() const { return gains_; }
+    /// Handle pose at which the grip would be at `grip` (device frame): where a pointing hand has to go.
+    [[nodiscard]] Pose handle_for(const Pose& grip) const { return settings_.mapping.to_device(grip - grab_offset_); }
+    [[nodiscard]] const Pose& grab_offset() const { return grab_offset_; }
+
+  private:
+    void read_device();
+    void run_model();
+    [[nodiscard]] Wrench command();
+    void write_report(const GateOutput& gate, const Wrench& command);
+
+    SessionSettings settings_;
+    std::unique_ptr<Model> model_;
+    std::unique_ptr<Data> data_;
+    OutputGate gate_;
+    DevicePort& device_;
+    VelocityEstimator velocity_;
+    EnergyLedger ledger_;
+    ImpulseChannel impulses_;
+    CouplingGains gains_;
+    DeviceReading reading_;
+    StepOutput output_;
+    HapticReport report_;
+    ArmResult arm_result_{ArmResult::hold_the_handle_still};
+    /// Handle in the scene, before the grab offset.
+    Pose handle_{0.0, 0.0, 0.0};
+    Twist handle_velocity_{0.0, 0.0, 0.0};
+    Wrench hand_force_{0.0, 0.0, 0.0};
+    Pose grab_offset_{0.0, 0.0, 0.0};
+    Mat3 device_mass_{Mat3::Identity()};
+    Mat3 mobility_{Mat3::Zero()};
+    Mat3 combined_{Mat3::Zero()};
+    /// Part of the last command that the gate let through.
+    double share_{0.0};
+    bool held_{false};
+    bool fresh_{false};
+    bool missing_{false};
+    bool arm_wanted_{false};
+    double coupling_energy_{0.0};
+};
+
+} // namespace haptics

@@ -1,0 +1,54 @@
+#pragma once
+/// State of the local model and the memory it works on. Large: set it aside once, before the loop starts.
+
+#include <haptics/core/contact/contact.hpp>
+#include <haptics/core/local_model/contact_system.hpp>
+#include <haptics/core/local_model/movable.hpp>
+#include <haptics/core/local_model/neighborhood.hpp>
+
+#include <array>
+#include <cstdint>
+
+namespace haptics {
+
+/// Where a kinematic neighbor is extrapolated from.
+struct Track {
+    Pose pose{0.0, 0.0, 0.0};
+    Twist velocity{0.0, 0.0, 0.0};
+    /// Distance between where the body was drawn from the last snapshot and where the new one has it: taken away within one tick.
+    Pose offset{0.0, 0.0, 0.0};
+};
+
+struct Data {
+    /// Steps done.
+    std::uint64_t step{0};
+    /// Loop-clock time of the state, s.
+    double time{0.0};
+    /// Proxy: pose and velocity of the tool's center of mass.
+    Pose pose{0.0, 0.0, 0.0};
+    Twist velocity{0.0, 0.0, 0.0};
+    /// The tool's shape at the present pose and the neighbors at their extrapolated poses.
+    BodySet tool;
+    BodySet neighbors;
+    /// The snapshot that the neighbors come from.
+    std::uint64_t sequence{0};
+    double snapshot_time{0.0};
+    double tick{1.0 / 60.0};
+    Vec2 gravity{0.0, 0.0};
+    std::array<Track, k_max_bodies> track;
+    std::int32_t movable_count{0};
+    /// Movables of the snapshot that found no place and act as kinematic (a reported fault).
+    std::int32_t movable_overflow{0};
+    std::array<MovableState, k_max_movables> movable;
+    PatchList patches;
+    PatchList previous;
+    ContactSystem system;
+    CollisionProblem collision;
+    CollisionSolution solution;
+    CollisionWorkspace workspace;
+    /// Bodies that the tool touches, by id.
+    std::int32_t touched_count{0};
+    std::array<std::uint64_t, k_max_patches> touched;
+};
+
+} // namespace haptics

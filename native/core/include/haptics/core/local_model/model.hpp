@@ -1,0 +1,61 @@
+#pragma once
+/// Constants of the local model: the tool, the method, the limits. Built off the loop, never written while stepping.
+
+#include <haptics/core/contact/body.hpp>
+#include <haptics/core/contact/collision.hpp>
+
+#include <cstdint>
+
+namespace haptics {
+
+/// How stiff contacts are integrated in time.
+enum class Integrator : std::uint8_t {
+    /// Forces at the start of the step, positions with the new velocity: cheapest; needs m > (K h^2 + 2 B h) / 4 per contact.
+    semi_implicit,
+    /// Forces at the end of the step, linearized: stable for every stiffness and mass; damps fast contact modes.
+    linearly_implicit,
+};
+
+/// What happens when a contact closes.
+enum class ContactMode : std::uint8_t {
+    penalty_impulse, ///< collision impulse upon contact, spring-damper afterwards (the paper's model ii)
+    penalty,         ///< spring-damper alone (the paper's model i)
+};
+
+/// Where and how the hand holds the tool.
+struct Grip {
+    /// Held point in the axes of the tool's body (from its center of mass), m.
+    Vec2 point{0.0, 0.0};
+    /// True: position and angle are held (3 rows). False: the point alone (2 rows), the tool turns freely about it.
+    bool pose{true};
+};
+
+struct LocalModelSettings {
+    Integrator integrator{Integrator::linearly_implicit};
+    ContactMode contact_mode{ContactMode::penalty_impulse};
+    CollisionMethod collision_method{CollisionMethod::poisson};
+    /// Approach slower than this gives no collision impulse, m/s, > 0.
+    double collision_speed{0.005};
+    /// Contacts are looked for within this distance beyond the reach of the step's motion, m.
+    double margin{0.0005};
+    /// Most collision events resolved at their own time within one step; later ones wait for the next step.
+    int max_events{4};
+};
+
+/// The rigid tool in the axes of its center of mass.
+struct ToolModel {
+    /// kg, > 0.
+    double mass{0.1};
+    /// Moment of inertia about the center of mass, kg m^2, > 0.
+    double inertia{1e-5};
+    Grip grip;
+    /// Shape and surface: body[0] with kind `tool`.
+    BodySet shape;
+};
+
+struct Model {
+    ToolModel tool;
+    LocalModelSettings settings;
+};
+
+} // namespace haptics

@@ -1,0 +1,47 @@
+#pragma once
+/// Movable neighbors inside the local model: what the model believes, and what it tells the environment.
+
+#include <haptics/core/types.hpp>
+
+#include <cstdint>
+
+namespace haptics {
+
+/// Movable neighbors that are integrated together with the tool; what exceeds it is treated as kinematic.
+inline constexpr int k_max_movables = 16;
+
+/// The part of a movable's state that travels to the environment in a report and comes back, unchanged, with the snapshot that reflects
+/// this report. The local model compares the two and takes over only the difference, so that its own, newer knowledge survives.
+struct MovableBelief {
+    std::uint64_t id{0};
+    /// Step at which the model met the body: the counter `given` starts at zero there.
+    std::uint64_t epoch{0};
+    /// Loop-clock time of the belief, s.
+    double time{0.0};
+    /// About the center of mass, scene axes.
+    Pose pose{0.0, 0.0, 0.0};
+    Twist velocity{0.0, 0.0, 0.0};
+    /// Corrections taken over from the environment since `epoch` (sum).
+    Pose corrected_pose{0.0, 0.0, 0.0};
+    Twist corrected_velocity{0.0, 0.0, 0.0};
+    /// Impulse and angular impulse that the tool has given to the body since `epoch` (N s, N s, N m s): a cumulative counter, so that a
+    /// lost report loses no momentum.
+    Wrench given{0.0, 0.0, 0.0};
+};
+
+/// A movable neighbor as the local model carries it from step to step.
+struct MovableState {
+    MovableBelief belief;
+    /// Index in Data::neighbors; -1 when the snapshot no longer lists it.
+    std::int32_t body{-1};
+    /// First row of the body in the step's system; -1 when nothing joins it to the tool.
+    std::int32_t row{-1};
+    /// Correction that is still to be blended in, and the time left for it, s.
+    Pose pending_pose{0.0, 0.0, 0.0};
+    Twist pending_velocity{0.0, 0.0, 0.0};
+    double blend_left{0.0};
+    /// Last step in which `given` changed.
+    std::uint64_t given_step{0};
+};
+
+} // namespace haptics

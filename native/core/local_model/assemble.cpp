@@ -1,0 +1,187 @@
+// From patches to rows in configuration space.
+//
+// The system's velocity is v = (tool; movable 1; movable 2; ...), three entries each, about the centers of mass. For a point p with
+// normal n between bodies a and b the gap rate is n . (v_a(p) - v_b(p)). A side that is in the system gives the row
+// [n_x, n_y, r x n] (minus for b); a side that is not gives the number `drive`, so that gap rate = row v - drive.
+//
+// Only movables that a chain of contacts joins to the tool are in the system: the others touch nothing that the hand can feel,
+// and the environment moves them.
+
+#include "internal.hpp"
+
+#include <algorithm>
+
+namespace haptics::local {
+namespace {
+
+constexpr int k_none = -1;
+
+// first system row of a body of the patch list (tool links first, then neighbors), or k_none
+int first_row(const Data& data, std::int32_t body) {
+    if (body < data.tool.body_count)
+        return 0;
+    const std::int32_t neighbor = body - data.tool.body_count;
+    for (int i = 0; i < data.movable_count; ++i) {
+        const MovableState& m = data.movable[static_cast<std::size_t>(i)];
+        if (m.body == neighbor)
+            return m.row;
+    }
+    return k_none;
+}
+
+const Body& body_of(const Data& data, std::int32_t body) {
+    return body < data.tool.body_count
+               ? data.tool.body[static_cast<std::size_t>(body)]
+               : data.neighbors.body[static_cast<std::size_t>(body - data.tool.body_count)];
+}
+
+std::int32_t movable_of(const Data& data, std::int32_t body) {
+    for (int i = 0; i < data.movable_count; ++i)
+        if (data.movable[static_cast<std::size_t>(i)].body == body - data.tool.body_count)
+            return i;
+    return -1;
+}
+
+// gives rows to the movables that contacts join to the tool
+void choose_island(Data& data) {
+    for (int i = 0; i < data.movable_count; ++i)
+        data.movable[static_cast<std::size_t>(i)].row = k_none;
+    int rows = 3;
+    bool grew = true;
+    while (grew) {
+        grew = false;
+        for (int i = 0; i < data.patches.count; ++i) {
+            const Patch& p = data.patches.patch[static_cast<std::size_t>(i)];
+            for (const auto& [inside, outside] : {std::pair{p.body_a, p.body_b}, std::pair{p.body_b, p.body_a}}) {
+                const std::int32_t m = outside < data.tool.body_count ? -1 : movable_of(data, outside);
+                if (m < 0 || data.movable[static_cast<std::size_t>(m)].row != k_none || first_row(data, inside) == k_none)
+                    continue;
+                data.movable[static_cast<std::size_t>(m)].row = rows;
+                rows += 3;
+                grew = true;
+            }
+        }
+    }
+    data.system.freedoms = rows;
+}
+
+// adds `sign` times the row of direction `n` at `p` on `body` to `target`, or its velocity to `drive`
+template <typename Row>
+void add_side(const Data& data, std::int32_t body, int row, const Vec2& p, const Vec2& n, double sign, Row&& target,
+              double& drive) {
+    const Body& b = body_of(data, body);
+    const Vec2 arm = p - b.pose.head<2>();
+    if (row == k_none) {
+        drive -= sign * n.dot(velocity_at(b.velocity, arm));
+        return;
+    }
+    target(row) += sign * n.x();
+    target(row + 1) += sign * n.y();
+    target(row + 2) += sign * cross(arm, n);
+}
+
+void assemble_mass(const Model& model, Data& data) {
+    ContactSystem& s = data.system;
+    const int n = s.freedoms;
+    s.velocity.setZero(n);
+    s.external.setZero(n);
+    s.mass.setZero(n, n);
+    s.inverse_mass.setZero(n, n);
+    const auto set = [&](int row, double mass, double inertia) {
+        for (int k = 0; k < 3; ++k) {
+            const double m = k < 2 ? mass : inertia;
+            s.mass(row + k, row + k) = m;
+            s.inverse_mass(row + k, row + k) = 1.0 / m;
+        }
+        s.external(row) = mass * data.gravity.x();
+        s.external(row + 1) = mass * data.gravity.y();
+    };
+    set(0, model.tool.mass, model.tool.inertia);
+    for (int i = 0; i < data.movable_count; ++i) {
+        const MovableState& m = data.movable[static_cast<std::size_t>(i)];
+        if (m.row == k_none)
+            continue;
+        const Body& b = data.neighbors.body[static_cast<std::size_t>(m.body)];
+        set(m.row, b.mass, b.inertia);
+    }
+    load_velocities(data);
+}
+
+} // namespace
+
+void load_velocities(Data& data) {
+    ContactSystem& s = data.system;
+    s.velocity.head<3>() = data.velocity;
+    for (int i = 0; i < data.movable_count; ++i) {
+        const MovableState& m = data.movable[static_cast<std::size_t>(i)];
+        if (m.row != k_none)
+            s.velocity.segment<3>(m.row) = m.belief.velocity;
+    }
+}
+
+void store_velocities(Data& data) {
+    const ContactSystem& s = data.system;
+    data.velocity = s.velocity.head<3>();
+    for (int i = 0; i < data.movable_count; ++i) {
+        MovableState& m = data.movable[static_cast<std::size_t>(i)];
+        if (m.row != k_none)
+            m.belief.velocity = s.velocity.segment<3>(m.row);
+    }
+}
+
+void assemble(const Model& model, Data& data) {
+    choose_island(data);
+    assemble_mass(model, data);
+    ContactSystem& s = data.system;
+    const int n = s.freedoms;
+    s.points = 0;
+    s.patches = 0;
+    s.normal_rows.setZero(2 * data.patches.count, n);
+    s.tangent_rows.setZero(data.patches.count, n);
+    for (int i = 0; i < data.patches.count; ++i) {
+        const Patch& p = data.patches.patch[static_cast<std::size_t>(i)];
+        const int row_a = first_row(data, p.body_a);
+        const int row_b = first_row(data, p.body_b);
+        if (row_a == k_none && row_b == k_none)
+            continue;
+        PatchRow& t = s.row[static_cast<std::size_t>(s.patches)];
+        t = PatchRow{};
+        t.patch = i;
+        t.first_point = s.points;
+        t.point_count = p.point_count;
+        t.stiffness = p.surface.stiffness;
+        t.damping = p.surface.damping;
+        t.static_friction = std::max(p.surface.static_friction, p.surface.dynamic_friction);
+        t.dynamic_friction = p.surface.dynamic_friction;
+        t.restitution = p.surface.restitution;
+        t.spring = p.memory.slip_spring;
+        t.continuing = p.memory.state != ContactState::none;
+        t.was_sliding = p.memory.state == ContactState::sliding;
+        if (row_a == 0 && p.body_b >= data.tool.body_count)
+            t.movable = movable_of(data, p.body_b);
+        Vec2 middle{0.0, 0.0};
+        for (int k = 0; k < p.point_count; ++k) {
+            const PatchPoint& point = p.point[static_cast<std::size_t>(k)];
+            PointRow& r = s.point[static_cast<std::size_t>(s.points)];
+            r = PointRow{};
+            r.patch = s.patches;
+            r.slot = k;
+            r.gap = point.gap;
+            r.stiffness = p.surface.stiffness * point.weight;
+            r.damping = p.surface.damping * point.weight;
+            r.was_apart = point.gap > 0.0;
+            auto row = s.normal_rows.row(s.points);
+            add_side(data, p.body_a, row_a, point.position, p.normal, 1.0, row, r.drive);
+            add_side(data, p.body_b, row_b, point.position, p.normal, -1.0, row, r.drive);
+            middle += point.weight * point.position;
+            ++s.points;
+        }
+        const Vec2 tangent = perpendicular(p.normal);
+        auto row = s.tangent_rows.row(s.patches);
+        add_side(data, p.body_a, row_a, middle, tangent, 1.0, row, t.drive);
+        add_side(data, p.body_b, row_b, middle, tangent, -1.0, row, t.drive);
+        ++s.patches;
+    }
+}
+
+} // namespace haptics::local

@@ -1,0 +1,108 @@
+// Collisions: which contacts take part, and what their impulses do to the tool, to its movable neighbors and to the hand.
+//
+// A point that was apart takes part when it has closed and still approaches; so does a point of a patch that overlaps without having been in contact
+// (a fast motion met the spring first). Points in continuous contact that approach take part with restitution 0, so that the impulse of a
+// neighbor is passed on and not let through. The restitution of a hit slower than the collision speed is 0 as well.
+
+#include "internal.hpp"
+
+#include <algorithm>
+
+namespace haptics::local {
+namespace {
+
+// closed to within this, m: far below what can be felt, far above rounding
+constexpr double k_closed = 1e-6;
+
+double rate(const ContactSystem& s, int point) {
+    return s.normal_rows.row(point).dot(s.velocity) - s.point[static_cast<std::size_t>(point)].drive;
+}
+
+bool may_collide(const ContactSystem& s, const PointRow& p) {
+    const PatchRow& t = s.row[static_cast<std::size_t>(p.patch)];
+    return p.was_apart || (!t.continuing && !t.collided);
+}
+
+} // namespace
+
+double next_collision(const Model& model, const Data& data, double limit) {
+    if (model.settings.contact_mode == ContactMode::penalty)
+        return -1.0;
+    const ContactSystem& s = data.system;
+    double earliest = -1.0;
+    for (int i = 0; i < s.points; ++i) {
+        const PointRow& p = s.point[static_cast<std::size_t>(i)];
+        const double closing = -rate(s, i);
+        if (closing <= model.settings.collision_speed || !may_collide(s, p))
+            continue;
+        const double time = std::max(p.gap, 0.0) / closing;
+        if (time <= limit && (earliest < 0.0 || time < earliest))
+            earliest = time;
+    }
+    return earliest;
+}
+
+bool collide(const Model& model, Data& data, StepOutput& output) {
+    ContactSystem& s = data.system;
+    std::array<int, k_max_collision_contacts> chosen;
+    int count = 0;
+    bool hit = false;
+    for (int i = 0; i < s.points && count < k_max_collision_contacts; ++i) {
+        const PointRow& p = s.point[static_cast<std::size_t>(i)];
+        if (p.gap > k_closed || rate(s, i) >= 0.0)
+            continue;
+        chosen[static_cast<std::size_t>(count++)] = i;
+        hit = hit || may_collide(s, p);
+    }
+    if (!hit)
+        return false;
+
+    CollisionProblem& problem = data.collision;
+    problem.resize(s.freedoms, count);
+    problem.inverse_mass = s.inverse_mass;
+    problem.velocity = s.velocity;
+    for (int c = 0; c < count; ++c) {
+        const int i = chosen[static_cast<std::size_t>(c)];
+        const PointRow& p = s.point[static_cast<std::size_t>(i)];
+        const PatchRow& t = s.row[static_cast<std::size_t>(p.patch)];
+        problem.normal_rows.row(c) = s.normal_rows.row(i);
+        problem.tangent_rows.row(c) = s.tangent_rows.row(p.patch);
+        problem.wall_normal_velocity(c) = p.drive;
+        problem.wall_tangent_velocity(c) = t.drive;
+        const bool bounces = may_collide(s, p) && -rate(s, i) > model.settings.collision_speed;
+        problem.restitution(c) = bounces ? t.restitution : 0.0;
+        problem.friction(c) = t.dynamic_friction;
+    }
+    resolve_collisions(model.settings.collision_method, problem, data.workspace, data.solution);
+    output.fell_back = output.fell_back || data.solution.fell_back;
+
+    const Vec3 before = s.velocity.head<3>();
+    s.velocity = data.solution.velocity;
+    const Mat3 j = grip_jacobian(model.tool.grip, data.pose);
+    output.grip_velocity_jump += j * (Vec3(s.velocity.head<3>()) - before);
+    output.collision_impulse +=
+        about_grip(model.tool.grip, data.pose, Wrench(data.solution.momentum_change.head<3>()));
+    for (int c = 0; c < count; ++c) {
+        const int i = chosen[static_cast<std::size_t>(c)];
+        PointRow& p = s.point[static_cast<std::size_t>(i)];
+        PatchRow& t = s.row[static_cast<std::size_t>(p.patch)];
+        const double normal = data.solution.normal_impulse(c);
+        if (may_collide(s, p)) {
+            t.collided = true;
+            t.impulse += std::abs(normal);
+        }
+        p.was_apart = false;
+        if (t.movable < 0)
+            continue;
+        MovableState& m = data.movable[static_cast<std::size_t>(t.movable)];
+        if (m.row < 0)
+            continue;
+        m.belief.given += normal * s.normal_rows.row(i).segment<3>(m.row).transpose() +
+                          data.solution.tangent_impulse(c) * s.tangent_rows.row(p.patch).segment<3>(m.row).transpose();
+        m.given_step = data.step;
+    }
+    store_velocities(data);
+    return true;
+}
+
+} // namespace haptics::local

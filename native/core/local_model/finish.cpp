@@ -1,0 +1,90 @@
+// After the motion: contact states, counts and events of the step.
+//
+// States (section 3.2 of the paper): none -> colliding when a collision was resolved, for one step; then sticking or sliding by Coulomb while
+// the gap is not open; none as soon as every point of the patch is apart. A frictionless contact always slides.
+
+#include "internal.hpp"
+
+#include <algorithm>
+
+namespace haptics::local {
+namespace {
+
+ContactState next_state(const ContactSystem& s, const PatchRow& t) {
+    if (t.collided)
+        return ContactState::colliding;
+    bool touching = false;
+    for (int k = 0; k < t.point_count; ++k)
+        touching = touching || s.point[static_cast<std::size_t>(t.first_point + k)].gap <= 0.0;
+    if (!touching)
+        return ContactState::none;
+    return t.mode == FrictionMode::stick ? ContactState::sticking : ContactState::sliding;
+}
+
+void add_event(StepOutput& output, ContactEventKind kind, std::uint64_t body, double time, const Patch* patch, double impulse) {
+    if (output.event_count == StepOutput::k_max_events) {
+        ++output.events_dropped;
+        return;
+    }
+    ContactEvent& e = output.event[static_cast<std::size_t>(output.event_count++)];
+    e = ContactEvent{kind, body, time, Vec2(0.0, 0.0), Vec2(0.0, 1.0), impulse};
+    if (patch != nullptr) {
+        e.position = patch->point[0].position;
+        e.normal = patch->normal;
+    }
+}
+
+bool contains(const std::array<std::uint64_t, k_max_patches>& ids, std::int32_t count, std::uint64_t id) {
+    return std::find(ids.begin(), ids.begin() + count, id) != ids.begin() + count;
+}
+
+} // namespace
+
+void finish(Data& data, StepOutput& output) {
+    ContactSystem& s = data.system;
+    std::array<std::uint64_t, k_max_patches> touched;
+    std::int32_t touched_count = 0;
+    for (int i = 0; i < s.patches; ++i) {
+        const PatchRow& t = s.row[static_cast<std::size_t>(i)];
+        Patch& p = data.patches.patch[static_cast<std::size_t>(t.patch)];
+        const ContactState before = p.memory.state;
+        const ContactState after = next_state(s, t);
+        double normal = 0.0;
+        for (int k = 0; k < t.point_count; ++k) {
+            const PointRow& row = s.point[static_cast<std::size_t>(t.first_point + k)];
+            normal += row.force;
+            p.point[static_cast<std::size_t>(row.slot)].gap = row.gap;
+            output.max_penetration = std::max(output.max_penetration, -row.gap);
+        }
+        p.memory.state = after;
+        p.memory.slip_spring = after == ContactState::none ? 0.0 : t.spring;
+        p.memory.age = after == ContactState::none ? 0 : p.memory.age + 1;
+        p.memory.normal_force = normal;
+        p.memory.tangent_force = t.force;
+        output.contacts += after != ContactState::none ? 1 : 0;
+        output.colliding += after == ContactState::colliding ? 1 : 0;
+        output.sticking += after == ContactState::sticking ? 1 : 0;
+        output.sliding += after == ContactState::sliding ? 1 : 0;
+        output.impulse_size += t.impulse;
+        if (p.body_a >= data.tool.body_count || after == ContactState::none)
+            continue;
+        const std::uint64_t id = data.neighbors.body[static_cast<std::size_t>(p.body_b - data.tool.body_count)].id;
+        if (!contains(touched, touched_count, id))
+            touched[static_cast<std::size_t>(touched_count++)] = id;
+        if (!contains(data.touched, data.touched_count, id))
+            add_event(output, ContactEventKind::began, id, data.time, &p, 0.0);
+        if (t.collided)
+            add_event(output, ContactEventKind::impact, id, data.time, &p, t.impulse);
+        if (before == ContactState::sticking && after == ContactState::sliding)
+            add_event(output, ContactEventKind::slip, id, data.time, &p, 0.0);
+    }
+    for (std::int32_t i = 0; i < data.touched_count; ++i) {
+        const std::uint64_t id = data.touched[static_cast<std::size_t>(i)];
+        if (!contains(touched, touched_count, id))
+            add_event(output, ContactEventKind::ended, id, data.time, nullptr, 0.0);
+    }
+    data.touched = touched;
+    data.touched_count = touched_count;
+}
+
+} // namespace haptics::local

@@ -1,0 +1,74 @@
+// One haptic step: find contacts, resolve collisions at their own time, integrate continuous contact, take stock.
+//
+// Sampled collision detection leaves up to h |v| of overlap, whose spring energy K (h v)^2 / 2 can be most of the impact energy at stiff
+// walls. So the step is cut at the time of impact: points that are apart close at t = gap / |gap rate|; the model is integrated up to
+// t, the impulses are applied with the gap at zero, and the rest of the step follows. At most `max_events` cuts are made; what would close later is
+// met by the contact spring and, if it is still closing then, resolved at the start of the next step.
+
+#include "internal.hpp"
+
+#include <haptics/core/contact/detection.hpp>
+
+#include <algorithm>
+
+namespace haptics {
+
+void reset(const Model& model, Data& data, const Pose& pose) {
+    data.pose = pose;
+    data.velocity.setZero();
+    data.patches.count = 0;
+    data.touched_count = 0;
+    data.tool.body_count = model.tool.shape.body_count;
+    data.tool.piece_count = model.tool.shape.piece_count;
+    std::copy_n(model.tool.shape.body.begin(), model.tool.shape.body_count, data.tool.body.begin());
+    std::copy_n(model.tool.shape.piece.begin(), model.tool.shape.piece_count, data.tool.piece.begin());
+    local::move_neighbors(data, 0.0);
+}
+
+Mat3 grip_mobility(const Model& model, const Data& data) {
+    const Mat3 j = local::grip_jacobian(model.tool.grip, data.pose);
+    const Vec3 inverse(1.0 / model.tool.mass, 1.0 / model.tool.mass, 1.0 / model.tool.inertia);
+    return j * inverse.asDiagonal() * j.transpose();
+}
+
+void step_direct(const Model& model, Data& data, const Pose& pose, const Twist& velocity, double dt, StepOutput& output) {
+    output = StepOutput{};
+    data.pose = pose;
+    data.velocity = velocity;
+    local::move_neighbors(data, dt);
+    data.previous = data.patches;
+    detect_patches(data.tool, data.neighbors, {model.settings.margin, dt}, data.previous, data.patches);
+    local::assemble(model, data);
+    output.grip_mobility = grip_mobility(model, data);
+    local::explicit_forces(model, data, dt, output);
+    local::finish(data, output);
+    ++data.step;
+}
+
+void step(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output) {
+    output = StepOutput{};
+    data.previous = data.patches;
+    detect_patches(data.tool, data.neighbors, {model.settings.margin, dt}, data.previous, data.patches);
+    local::assemble(model, data);
+
+    output.grip_mobility = grip_mobility(model, data);
+
+    double left = dt;
+    for (int event = 0; event < model.settings.max_events; ++event) {
+        const double time = local::next_collision(model, data, left);
+        if (time < 0.0)
+            break;
+        if (time > 0.0) {
+            local::integrate(model, data, hand, time, left - time, time / dt, output);
+            left -= time;
+        }
+        if (!local::collide(model, data, output))
+            break;
+    }
+    if (left > 0.0)
+        local::integrate(model, data, hand, left, 0.0, left / dt, output);
+    local::finish(data, output);
+    ++data.step;
+}
+
+} // namespace haptics
