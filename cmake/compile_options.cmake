@@ -21,7 +21,9 @@ target_compile_options(haptics_options INTERFACE
     -Wall -Wextra -Wpedantic -Werror -Wshadow -Wconversion -Wdouble-promotion -Wnon-virtual-dtor
     -Woverloaded-virtual -Wold-style-cast -Wcast-align -Wunused -Wformat=2 -Wimplicit-fallthrough
     # the same bits from every build and compiler: no fused multiply-add behind our back
-    -ffp-contract=off)
+    -ffp-contract=off
+    # messages name our files from the root of the project
+    "-fmacro-prefix-map=${CMAKE_SOURCE_DIR}/=")
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # a unique symbol would keep the library mapped, and the editor would run the old code after a reload
     target_compile_options(haptics_options INTERFACE -fno-gnu-unique -Wduplicated-cond -Wlogical-op)
