@@ -3,6 +3,7 @@
 
 #include <haptics/core/types.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -24,6 +25,9 @@ class DelayLine {
         next_ = next_ + 1 == values_.size() ? 0 : next_ + 1;
         return out;
     }
+
+    /// Makes everything that is under way `value`.
+    void fill(const Vec3& value) { std::fill(values_.begin(), values_.end(), value); }
 
   private:
     std::vector<Vec3> values_;

@@ -28,7 +28,7 @@ class RecordedPath {
     RecordedPath(std::vector<HandTarget> points, PathInterpolation interpolation, bool repeat);
 
     /// The path at `time` s. Constant time when time grows from call to call. Does not allocate.
-    [[nodiscard]] PathSample sample(double time) const;
+    [[nodiscard]] PathSample sample(double time);
     /// True when there is no point.
     [[nodiscard]] bool empty() const { return points_.empty(); }
     /// Time of the last point, s.
@@ -40,7 +40,7 @@ class RecordedPath {
     std::vector<HandTarget> points_;
     PathInterpolation interpolation_{PathInterpolation::linear};
     bool repeat_{false};
-    mutable std::size_t cursor_{0};
+    std::size_t cursor_{0};
 };
 
 } // namespace haptics

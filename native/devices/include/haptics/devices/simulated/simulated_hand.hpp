@@ -61,6 +61,8 @@ class SimulatedHand {
     SimulatedHand(const SimulatedHandOptions& options, double moved_mass, double moved_inertia,
                   const Pose& start);
 
+    /// The handle was put at `pose` at `time` s: a target hand rests there.
+    void restart(double time, const Pose& pose);
     /// A new target (target hand), seen at the device's clock time `now` s.
     void set_target(double now, const HandTarget& target) { follower_.push(now, target); }
     /// A new constant wrench (N, N, N m). Non-finite is ignored.

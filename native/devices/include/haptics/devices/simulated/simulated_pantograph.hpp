@@ -106,6 +106,8 @@ class SimulatedPantograph final : public DevicePort {
     [[nodiscard]] const Wrench& hand_force() const { return hand_force_; }
     /// Force of the motors at the end of the last advance, after delay and limits (N, N, N m).
     [[nodiscard]] const Wrench& motor_force() const { return motor_force_; }
+    /// What the encoders disagree by in the last reading, rad (joint encoders of a twin; see PoseEstimate).
+    [[nodiscard]] double encoder_residual() const { return residual_; }
     /// Simulated time since construction, s.
     [[nodiscard]] double time() const { return time_; }
     /// The device's kinematics, for the gate.
@@ -113,7 +115,7 @@ class SimulatedPantograph final : public DevicePort {
 
   private:
     void sub_step(double h);
-    void hold_inside(const Pose& before);
+    void hold_inside(const Pose& before, const Mat3& mobility);
     [[nodiscard]] double room(const Pose& pose) const;
     [[nodiscard]] Pose measure();
 
@@ -130,6 +132,7 @@ class SimulatedPantograph final : public DevicePort {
     Wrench motor_force_{0.0, 0.0, 0.0};
     Wrench hand_force_{0.0, 0.0, 0.0};
     double time_{0.0};
+    double residual_{0.0};
     std::uint64_t sequence_{0};
     std::uint32_t buttons_{0};
 };

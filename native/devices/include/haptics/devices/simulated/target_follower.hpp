@@ -31,7 +31,7 @@ class TargetFollower {
     [[nodiscard]] long dropped() const { return dropped_; }
 
   private:
-    [[nodiscard]] Pose interpolate(double time);
+    [[nodiscard]] Pose interpolate(double time) const;
     [[nodiscard]] const HandTarget& at(int age) const;
 
     std::array<HandTarget, k_capacity> ring_{};
@@ -42,9 +42,7 @@ class TargetFollower {
     double wanted_delay_{0.034};
     std::array<Pose, 3> stage_{Pose::Zero(), Pose::Zero(), Pose::Zero()};
     Twist velocity_{0.0, 0.0, 0.0};
-    double step_{0.0};
-    double time_constant_{0.0};
-    double blend_{0.0};
+    double time_constant_{0.02};
     long dropped_{0};
 };
 
