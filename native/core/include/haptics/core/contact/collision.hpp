@@ -1,5 +1,13 @@
 #pragma once
-/// Simultaneous collisions (section 3.2 of the paper, eqs 4 to 6): impulses that resolve all closing contacts at once.
+/// Simultaneous collisions (section 3.2 of Constantinescu, Salcudean and Croft 2003, eqs 4 to 6): one set of impulses
+/// that resolves all closing contacts at once. The derivation is in native/core/contact/collision.cpp.
+///
+///     problem.resize(freedoms, contacts);
+///     problem.inverse_mass = …;              // D^-1
+///     problem.normal_rows.row(i) = …;        // and the other per-contact members
+///     problem.velocity = …;                  // q' before
+///     resolve_collisions(CollisionMethod::poisson, problem, workspace, solution);
+///     velocity = solution.velocity;          // q' after
 
 #include <haptics/core/types.hpp>
 
@@ -9,38 +17,108 @@ namespace haptics {
 
 /// How colliding contacts are resolved.
 enum class CollisionMethod : std::uint8_t {
-    poisson,       ///< default: two phases (compression, restitution), impulses >= 0, kinetic energy never grows
-    mass_weighted, ///< v+ = -e v- as an equality in the metric of D; can pull
-    paper,         ///< eq. (5) by pseudo-inverse; can add energy, stops free motion
+    /// Default. Poisson's hypothesis in two phases (compression, restitution) with Coulomb friction: impulses never pull,
+    /// kinetic energy never grows, sliding survives.
+    poisson,
+    /// v+ = -e v- for every closing contact, as an equality in the metric of D (least squares of the smallest change of
+    /// motion). Without friction. Can pull; can add energy when restitutions differ.
+    mass_weighted,
+    /// Eq. (5) by pseudo-inverse. Without friction. Stops free motion, can add energy and pull. For comparison only.
+    paper,
 };
 
-/// Most rows and freedoms of one collision problem.
+/// Most contacts of one collision problem.
 inline constexpr int k_max_collision_contacts = 64;
+/// Most freedoms of one collision problem: a linkage of 66 and 16 movable bodies of 3.
+inline constexpr int k_max_collision_freedoms = 114;
+/// Most contacts with friction that the exact friction solver takes on at once; more go to the fallback.
+inline constexpr int k_max_exact_friction_contacts = 16;
 
-/// One collision problem in configuration space. n freedoms, m contacts.
+/// One value per contact, capacity fixed: resizing never allocates.
+using ContactVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, k_max_collision_contacts, 1>;
+/// One value per freedom, capacity fixed.
+using FreedomVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, k_max_collision_freedoms, 1>;
+/// One row of freedoms per contact, row by row in memory, capacity fixed.
+using ContactRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, k_max_collision_contacts,
+                                  k_max_collision_freedoms>;
+/// Square matrix over the freedoms, row by row in memory, capacity fixed.
+using FreedomMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, k_max_collision_freedoms,
+                                    k_max_collision_freedoms>;
+
+/// One collision problem in configuration space. About 230 kB: keep it with the stepping data, not on the stack.
 struct CollisionProblem {
-    int freedoms{0};
-    int contacts{0};
-    /// D^-1, n x n, symmetric positive definite.
-    Eigen::Ref<const Eigen::MatrixXd> inverse_mass;
-    /// Normal rows J_n, m x n: relative normal velocity = J_n q' - wall_velocity, positive when opening.
-    Eigen::Ref<const Eigen::MatrixXd> normal_rows;
-    /// Tangent rows J_t, m x n.
-    Eigen::Ref<const Eigen::MatrixXd> tangent_rows;
-    /// Normal and tangential velocity of the environment side at each contact, m/s (moving walls).
-    Eigen::Ref<const Eigen::VectorXd> wall_normal_velocity;
-    Eigen::Ref<const Eigen::VectorXd> wall_tangent_velocity;
-    /// Restitution 0..1 and friction coefficient >= 0 of each contact.
-    Eigen::Ref<const Eigen::VectorXd> restitution;
-    Eigen::Ref<const Eigen::VectorXd> friction;
+    /// D^-1, freedoms x freedoms, symmetric positive definite (block diagonal for an island of several bodies).
+    FreedomMatrix inverse_mass;
+    /// q' before the collision.
+    FreedomVector velocity;
+    /// Normal rows J_n, contacts x freedoms: the gap opens at J_n q' - wall_normal_velocity, m/s. A row that is zero, or
+    /// below 1e-7 of the largest in the metric of D^-1, cannot be moved: it gets no impulse.
+    ContactRows normal_rows;
+    /// Tangent rows J_t, contacts x freedoms: the contact slips at J_t q' - wall_tangent_velocity, m/s. Read by `poisson`
+    /// only, and only where friction > 0.
+    ContactRows tangent_rows;
+    /// Velocity of the environment's side along the normal, m/s, positive towards the tool.
+    ContactVector wall_normal_velocity;
+    /// Velocity of the environment's side along the tangent, m/s.
+    ContactVector wall_tangent_velocity;
+    /// Poisson's coefficient of restitution, 0..1 (values outside are clamped).
+    ContactVector restitution;
+    /// Coulomb coefficient, >= 0.
+    ContactVector friction;
+
+    /// Sets the sizes without allocating; walls at rest, no restitution, no friction, all else to be filled in.
+    /// freedoms 1..k_max_collision_freedoms, contacts 0..k_max_collision_contacts (clamped).
+    void resize(int freedoms, int contacts);
+    [[nodiscard]] int freedoms() const { return static_cast<int>(velocity.size()); }
+    [[nodiscard]] int contacts() const { return static_cast<int>(restitution.size()); }
 };
 
-/// Result flags.
-struct CollisionResult {
-    /// The iteration reached its bound and the deterministic fallback gave the answer.
-    bool fell_back{false};
-    /// Iterations used.
+/// What a collision did.
+struct CollisionSolution {
+    /// q' after the collision.
+    FreedomVector velocity;
+    /// P_cs of eq. (6), D (q'+ - q'-); J_n^T p_n + J_t^T p_t for `poisson` and `mass_weighted`.
+    FreedomVector momentum_change;
+    /// Normal impulse per contact, N s, >= 0 for `poisson`. For `paper`, whose change of momentum is in general no sum of
+    /// contact impulses, the smallest that give the same change of normal velocities.
+    ContactVector normal_impulse;
+    /// Tangential impulse per contact, N s, along +tangent, at most friction times normal_impulse.
+    ContactVector tangent_impulse;
+    /// Kinetic energy gained minus the work of moving walls, J: the sum of p (v- + v+)/2 over all contacts. Never
+    /// positive for `poisson` (but for rounding); with walls at rest it is the change of kinetic energy.
+    double energy_change{0.0};
+    /// Share of the restitution impulses that was applied, 0..1; below 1 only where all of them would have added energy
+    /// (unequal restitutions, or friction coupled with the normals).
+    double restitution_scale{1.0};
+    /// Pivots and active-set changes, all phases.
     int iterations{0};
+    /// Contacts that no motion can satisfy (squeezed between closing walls), left without impulse. Never with walls at
+    /// rest.
+    int squeezed{0};
+    /// An exact solver did not finish within its bound; the guaranteed but approximate one gave the answer.
+    bool fell_back{false};
 };
+
+/// Scratch memory of resolve_collisions, about 550 kB, no state between calls. One per thread.
+struct CollisionWorkspace {
+    static constexpr int k_rows = 2 * k_max_collision_contacts;
+    static constexpr int k_complementarity = 4 * k_max_exact_friction_contacts + k_max_collision_contacts;
+
+    /// J, rows x freedoms: normals, then the tangents of contacts with friction; all scaled per contact.
+    double jacobian[k_rows * k_max_collision_freedoms];
+    /// J D^-1.
+    double response[k_rows * k_max_collision_freedoms];
+    /// J D^-1 J^T.
+    double delassus[k_rows * k_rows];
+    /// Cholesky factor of the active normals; singular vectors of the comparison methods.
+    double factor[k_max_collision_contacts * k_max_collision_contacts];
+    /// Tableau of the complementarity problem with friction.
+    double tableau[k_complementarity * (k_complementarity + 2)];
+};
+
+/// Resolves all collisions of `problem`. Always gives a solution; deterministic; neither allocates nor throws. The time
+/// is bounded (see the benchmark collision/worst).
+void resolve_collisions(CollisionMethod method, const CollisionProblem& problem, CollisionWorkspace& workspace,
+                        CollisionSolution& solution) noexcept;
 
 } // namespace haptics
