@@ -14,6 +14,12 @@ Variant Engine::call(const char* method, const Variant* args, int64_t count) con
     return self.call_array(StringName(method), args, count);
 }
 
+String Engine::get_version_string() const {
+    GDExtensionGodotVersion2 version = {};
+    internal::api.get_godot_version2(&version);
+    return version.string;
+}
+
 bool Engine::is_editor_hint() const {
     return call("is_editor_hint", nullptr, 0);
 }

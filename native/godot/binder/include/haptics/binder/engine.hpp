@@ -10,6 +10,8 @@ class Engine {
   public:
     static Engine* get_singleton();
 
+    /// The running engine, as "Godot Engine v4.6.3.stable...".
+    String get_version_string() const;
     /// True in the editor process.
     bool is_editor_hint() const;
     /// False while the engine starts and once it is ending.
