@@ -1,6 +1,7 @@
 #include <haptics/core/dynamics/closed_chain.hpp>
 #include <haptics/core/dynamics/forward_dynamics.hpp>
 #include <haptics/core/dynamics/kinematics.hpp>
+#include <haptics/core/dynamics/split_chain.hpp>
 
 namespace haptics {
 
@@ -9,7 +10,7 @@ void prepare_dynamics(const LinkageModel& model, LinkageData& data) {
         return;
     }
     update_rotations(model, data);
-    if (model.kernel == DynamicsKernel::articulated || model.kernel == DynamicsKernel::split_chain) {
+    if (model.kernel == DynamicsKernel::articulated) {
         update_positions(model, data);
     }
 }
@@ -30,6 +31,8 @@ void forward_dynamics(const LinkageModel& model, const LinkageData& data, const 
         closed_chain_acceleration(model, data, force, acceleration);
         break;
     case DynamicsKernel::split_chain:
+        split_chain_acceleration(model, data, force, acceleration);
+        break;
     case DynamicsKernel::articulated:
         articulated_acceleration(model, data, force, nullptr, workspace, acceleration);
         break;

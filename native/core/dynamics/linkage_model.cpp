@@ -5,6 +5,7 @@
 /// center of mass, so that its block of the mass matrix is diagonal.
 
 #include <haptics/core/dynamics/linkage_model.hpp>
+#include <haptics/core/dynamics/split_chain.hpp>
 
 #include <cmath>
 
@@ -167,6 +168,9 @@ std::vector<LinkageFault> build_model(const LinkageSpec& spec, LinkageModel& mod
     }
     describe_chain(model);
     model.kernel = choose_kernel(model);
+    if (model.kernel == DynamicsKernel::split_chain) {
+        describe_split_chain(model);
+    }
     return faults;
 }
 

@@ -77,6 +77,30 @@ struct ChainModel {
     BodyNumbers diagonal{};
 };
 
+/// Most steps of a lane of the split chain, the start included.
+inline constexpr int k_split_steps = 18;
+
+/// Constants of one step of the split chain: a body in each of four lanes.
+struct SplitStep {
+    /// Slot whose pose is read, and where the angular acceleration goes.
+    int slot[4]{};
+    int target[4]{};
+    /// From the center of mass to the joints where the lane enters and leaves the body, body axes, m.
+    double entry_x[4]{}, entry_y[4]{}, exit_x[4]{}, exit_y[4]{};
+    /// 1/kg, 1/(kg m^2); zero stands for the ground.
+    double inverse_mass[4]{}, inverse_inertia[4]{};
+    /// 1, or 0 for a lane that idles in the last step.
+    double active[4]{};
+};
+
+/// Layout of the split chain, see split_chain.cpp.
+struct SplitModel {
+    /// Steps of the longest lane; the last one idles in some lanes when `idle`.
+    int steps{0};
+    bool idle{false};
+    Slots<SplitStep, k_split_steps> step;
+};
+
 /// Constants of a linkage. Pointer-free; shared by any number of LinkageData.
 struct LinkageModel {
     bool floating{false};
@@ -102,6 +126,7 @@ struct LinkageModel {
     BodyNumbers inverse_mass{};
     BodyNumbers inverse_inertia{};
     ChainModel chain;
+    SplitModel split;
     /// The bodies form one serial revolute chain, so that `chain` holds.
     bool is_chain{false};
 };
