@@ -6,8 +6,8 @@
 #     --junit     also writes the results as JUnit XML
 #     --timeout   for each of the two processes (default 300): tests/unit and tests/integration run as a game,
 #                 tests/editor inside of the editor
-# It fails when a test failed or asserted nothing, when no test ran, when a suite does not parse or has no test, and when the
-# engine reported an error that no test expected. Logs and results stay in build/test_reports/.
+# It fails when a test failed or asserted nothing, when no test ran, when a suite does not parse or has no test, and
+# when the engine reported an error that no test expected. Logs and results stay in build/test_reports/.
 set -uo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
 root=$(cd "$here/../.." && pwd -P)
@@ -27,7 +27,8 @@ done
 godot=$(GODOT=${GODOT:-} "$root/tools/godot" --where | head -n 1)
 [[ -x $godot ]] || { echo "run.sh: tools/godot found no Godot" >&2 && exit 2; }
 
-exec 8>"$root/build/.gut_runner_$kind.lock" 2>/dev/null || { mkdir -p "$root/build" && exec 8>"$root/build/.gut_runner_$kind.lock"; }
+mkdir -p "$root/build"
+exec 8>"$root/build/.gut_runner_$kind.lock"
 flock -n 8 || { echo "run.sh: waiting for another run of the suites"; flock 8; }
 
 project=$("$here/stage.sh" "$kind" ${tests:+"$tests"}) || exit $?
@@ -38,8 +39,14 @@ home=$root/build/staging/.home
 mkdir -p "$home/data" "$home/config" "$home/cache"
 export XDG_DATA_HOME=$home/data XDG_CONFIG_HOME=$home/config XDG_CACHE_HOME=$home/cache
 
-# the editor's progress bars tell nothing
-show() { if [[ $1 == import ]]; then cat >/dev/null; else grep --line-buffered -avE '\[ *([0-9]+%|DONE) *\]|^.\[0m$|^Godot Engine' | cat -s; fi; }
+# show NAME: what a reader wants of a part's output; the editor's progress bars tell nothing
+show() {
+    if [[ $1 == import ]]; then
+        cat >/dev/null
+    else
+        grep --line-buffered -avE '\[ *([0-9]+%|DONE) *\]|^.\[0m$|^Godot Engine' | cat -s
+    fi
+}
 
 # part NAME COMMAND…: runs it with the time limit and keeps output, exit code and results apart for the report
 part() {
@@ -52,19 +59,26 @@ part() {
     echo "${PIPESTATUS[0]}" >"$folder/exit_code"
 }
 
+# has_suites res://FOLDER…
+has_suites() {
+    [[ $# -gt 0 && -n $(find -L "${@/#res:\/\//$project/}" -name 'test_*.gd' -print -quit 2>/dev/null) ]]
+}
+
 dirs=()
 for folder in unit integration; do [[ -d $project/tests/$folder ]] && dirs+=("res://tests/$folder"); done
 part import --import
-if [[ ${#dirs[@]} -gt 0 && -n $(find -L "${dirs[@]/#res:\/\//$project/}" -name 'test_*.gd' -print -quit) ]]; then
-    export GUT_RUNNER_DIRS=$(IFS=, && echo "${dirs[*]}")
+if has_suites "${dirs[@]}"; then
+    GUT_RUNNER_DIRS=$(IFS=, && echo "${dirs[*]}")
+    export GUT_RUNNER_DIRS
     if [[ $kind == gut ]]; then
-        part game -s res://addons/gut/gut_cmdln.gd "-gdir=$GUT_RUNNER_DIRS" -ginclude_subdirs -gexit -gconfig= -gdisable_colors \
-            -gpre_run_script=res://addons/gut_host/results_hook.gd -gpost_run_script=res://addons/gut_host/results_hook.gd
+        hook=res://addons/gut_host/results_hook.gd
+        part game -s res://addons/gut/gut_cmdln.gd "-gdir=$GUT_RUNNER_DIRS" -ginclude_subdirs -gexit -gconfig= \
+            -gdisable_colors "-gpre_run_script=$hook" "-gpost_run_script=$hook"
     else
         part game -s res://addons/gut/main.gd
     fi
 fi
-if [[ -n $(find -L "$project/tests/editor" -name 'test_*.gd' -print -quit 2>/dev/null) ]]; then
+if has_suites res://tests/editor; then
     GUT_RUNNER_IN_EDITOR=1 GUT_RUNNER_DIRS=res://tests/editor part editor --editor
 fi
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes a project that sees our files through links and holds exactly one GutTest: our runner, or GUT itself.
-#   stage.sh ours|gut [FOLDER]    FOLDER stands in for tests/ (the runner's own tests use that)
+#   stage.sh ours|gut [FOLDER]    with FOLDER: nothing of ours but the settings, and that folder as tests/ (self_test.sh)
 # GUT is taken from addons/gut, or from $GUT_FOLDER to try another copy of it.
 # Prints the project's folder, build/staging/<kind> or build/staging/self_test_<kind>.
 set -euo pipefail
@@ -17,17 +17,20 @@ for folder in "$project"/addons/gut "$project"/addons/gut_host; do
     [[ ! -d $folder ]] || find "$folder" -type l -delete
 done
 
-# ours: all that the project's own editor would see
-for entry in "$root"/*; do
-    name=${entry##*/}
-    case $name in addons | build | project.godot | *.md | LICENSE | Makefile | CMake*) continue ;; esac
-    [[ $name != tests || -z $tests ]] || continue
-    [[ -d $entry && -e $entry/.gdignore ]] || ln -s "$entry" "$project/$name"
-done
-for entry in "$root"/addons/*; do
-    [[ ${entry##*/} == gut ]] || ln -s "$entry" "$project/addons/${entry##*/}"
-done
-[[ -z $tests ]] || ln -s "$tests" "$project/tests"
+if [[ -n $tests ]]; then
+    # a copy, so that no .uid file lands beside the sources
+    rm -rf "$project/tests" && cp -r "$tests" "$project/tests"
+else
+    # all that the project's own editor would see
+    for entry in "$root"/*; do
+        name=${entry##*/}
+        case $name in addons | build | cmake | project.godot | *.md | LICENSE | Makefile | CMake* | *rc) continue ;; esac
+        [[ -d $entry && -e $entry/.gdignore ]] || ln -s "$entry" "$project/$name"
+    done
+    for entry in "$root"/addons/*; do
+        [[ ${entry##*/} == gut ]] || ln -s "$entry" "$project/addons/${entry##*/}"
+    done
+fi
 
 # what Godot left beside a script of ours that is gone
 find "$project/addons" -mindepth 2 -name '*.uid' | while IFS= read -r uid; do
@@ -55,8 +58,13 @@ else
 fi
 
 python3 "$here/stage_settings.py" "$kind" "$root/project.godot" "$project/project.godot"
-# without this list the first import of an extension aborts at exit
-if [[ -e $root/addons/haptics/haptics.gdextension ]]; then
+extension=$project/addons/haptics/haptics.gdextension
+if [[ -e $extension ]]; then
+    found=$(sed -n 's|.*= "res://\(.*\.so\)"$|\1|p' "$extension" | sort -u | while IFS= read -r file; do
+        [[ ! -e $project/$file ]] || echo "$file"
+    done)
+    [[ -n $found ]] || { echo "the native library is not built: run make, then the suites" >&2 && exit 2; }
+    # without this list the first import of an extension aborts at exit
     mkdir -p "$project/.godot"
     echo "res://addons/haptics/haptics.gdextension" >"$project/.godot/extension_list.cfg"
 fi

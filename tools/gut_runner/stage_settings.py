@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Copies project.godot for a staging project: our editor host is enabled, our runner is checked like our other scripts."""
+"""Copies project.godot for a staging project: enables our editor host, has our runner checked like our other scripts."""
 import pathlib
 import re
 import sys
@@ -10,7 +10,8 @@ HOST = '"res://addons/gut_host/plugin.cfg"'
 def enable_host(text: str) -> str:
     enabled = re.compile(r"^enabled=PackedStringArray\((.*)\)$", re.MULTILINE)
     if enabled.search(text):
-        return enabled.sub(lambda found: f"enabled=PackedStringArray({', '.join(filter(None, [found[1], HOST]))})", text)
+        listed = ", ".join(filter(None, [enabled.search(text)[1], HOST]))
+        return enabled.sub(f"enabled=PackedStringArray({listed})", text)
     return f"{text.rstrip()}\n\n[editor_plugins]\n\nenabled=PackedStringArray({HOST})\n"
 
 

@@ -1,4 +1,3 @@
-# gdlint: disable=max-public-methods
 extends "res://addons/gut/assert_values.gd"
 ## Asserts on strings, files, types and objects.
 

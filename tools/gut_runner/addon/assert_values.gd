@@ -1,4 +1,3 @@
-# gdlint: disable=max-public-methods
 extends "res://addons/gut/assert_base.gd"
 ## Asserts on plain values: equality, order, ranges, containers.
 

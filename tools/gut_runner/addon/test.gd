@@ -1,4 +1,3 @@
-# gdlint: disable=max-public-methods
 class_name GutTest
 extends "res://addons/gut/assert_errors.gd"
 ## A test suite, written for the API of GUT 9.6. This is the part of that API which our suites

@@ -21,6 +21,8 @@ func run() -> void:
 	add_child(gut as Node)
 	for directory: String in OS.get_environment("GUT_RUNNER_DIRS").split(","):
 		gut.add_directory(directory)
-	GutErrorTracker.register_logger(gut.error_tracker)
+	# not by GUT's register_logger: in the editor, static variables of scripts other than @tool
+	# ones stay empty, and with its own empty it does nothing
+	OS.add_logger(gut.error_tracker as Logger)
 	gut.end_run.connect(func() -> void: ended.emit())
 	gut.test_scripts()

@@ -1,0 +1,6 @@
+extends GutTest
+## A file without a test.
+
+
+func helper() -> void:
+	pass
