@@ -22,11 +22,13 @@ namespace {
 constexpr double k_first_delay = 0.034;
 constexpr double k_least_delay = 0.004;
 constexpr double k_largest_delay = 0.1;
-constexpr double k_forget_time = 2.0;
+constexpr double k_forget_time = 1.0;
 constexpr double k_warp = 0.1;
-constexpr double k_least_constant = 0.008;
+constexpr double k_adapt_time = 0.3;
+constexpr double k_margin = 1.1;
+constexpr double k_least_constant = 0.014;
 constexpr double k_largest_constant = 0.03;
-constexpr double k_constant_per_delay = 0.6;
+constexpr double k_constant_per_delay = 0.9;
 
 double constant_for(double delay) {
     return std::clamp(k_constant_per_delay * delay, k_least_constant, k_largest_constant);
@@ -40,7 +42,7 @@ void TargetFollower::reset(double time, const Pose& pose) {
     delay_ = wanted_delay_ = k_first_delay;
     time_constant_ = constant_for(delay_);
     stage_ = {pose, pose, pose};
-    ring_[0] = {time - k_largest_delay, pose};
+    ring_[0] = {time, pose};
     count_ = 1;
 }
 
@@ -98,7 +100,8 @@ void TargetFollower::advance(double now) {
         return;
     now_ = now;
     wanted_delay_ = std::max(k_least_delay, wanted_delay_ * (1.0 - std::min(1.0, step / k_forget_time)));
-    delay_ += std::clamp(wanted_delay_ - delay_, -k_warp * step, k_warp * step);
+    const double rate = (k_margin * wanted_delay_ - delay_) / k_adapt_time;
+    delay_ += std::clamp(rate, -k_warp, k_warp) * step;
     time_constant_ = constant_for(delay_);
 
     const double blend = 1.0 - std::exp(-step / time_constant_);
