@@ -34,9 +34,6 @@ void ProbeServer::_bind_methods() {
     ClassDB::bind_method(D_METHOD("get_startups"), &ProbeServer::get_startups);
     ClassDB::bind_method(D_METHOD("get_beats"), &ProbeServer::get_beats);
     ClassDB::bind_method(D_METHOD("is_beating"), &ProbeServer::is_beating);
-    ClassDB::bind_method(D_METHOD("set_note", "note"), &ProbeServer::set_note);
-    ClassDB::bind_method(D_METHOD("get_note"), &ProbeServer::get_note);
-    ADD_PROPERTY(PropertyInfo(Variant::STRING, "note"), "set_note", "get_note");
 }
 
 } // namespace haptics

@@ -5,6 +5,9 @@
 #include <atomic>
 #include <thread>
 
+/// Changes from build to build; the build makes its source.
+extern const long probe_generation;
+
 namespace haptics {
 
 /// Test singleton with a running thread, as a loop has one: it must stop before the library goes.
@@ -16,14 +19,11 @@ class ProbeServer : public godot::Object {
     ~ProbeServer() override { instance = nullptr; }
 
     static ProbeServer* get_singleton() { return instance; }
-    /// Changes from build to build.
-    int64_t get_generation() const;
+    int64_t get_generation() const { return probe_generation; }
     int64_t get_frames() const { return frames; }
     int64_t get_startups() const { return startups; }
     int64_t get_beats() const { return beats.load(); }
     bool is_beating() const { return beating.load(); }
-    void set_note(const godot::String& note) { note_ = note; }
-    godot::String get_note() const { return note_; }
 
     /// Starts the thread and hangs itself into main loop and unloading.
     static void start();
@@ -37,7 +37,6 @@ class ProbeServer : public godot::Object {
     static inline int64_t startups = 0;
     static inline std::atomic<int64_t> beats{0};
     static inline std::atomic<bool> beating{false};
-    godot::String note_;
 };
 
 } // namespace haptics

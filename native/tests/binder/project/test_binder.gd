@@ -1,5 +1,6 @@
 extends SceneTree
-## Calls every kind of bound member by both call paths. Prints `N passed, N failed` and quits with 1 on a failure.
+## Calls every kind of bound member by both call paths. Prints `N passed, N failed` and quits with 1
+## on a failure.
 
 const LISTENER: GDScript = preload("res://error_listener.gd")
 
@@ -146,13 +147,21 @@ func test_wrong_calls_by_name_are_refused() -> void:
 	var probe: BinderProbe = BinderProbe.new()
 	var node: Node = Node.new()
 	_equal(probe.callv("echo_int", ["text"]), null, "wrong type")
-	_equal(_errors.take_containing("Cannot convert argument 1 from String to int"), true, "wrong type is said")
+	_equal(
+		_errors.take_containing("Cannot convert argument 1 from String to int"),
+		true,
+		"wrong type is said"
+	)
 	_equal(probe.callv("add", [1]), null, "too few")
 	_equal(_errors.take_containing("expected 2 argument"), true, "too few is said")
 	_equal(probe.callv("add", [1, 2, 3]), null, "too many")
 	_equal(_errors.take_containing("expected 2 argument"), true, "too many is said")
 	_equal(probe.callv("echo_probe", [node]), null, "an object of the wrong class")
-	_equal(_errors.take_containing("Cannot convert argument 1 from Object to Object"), true, "wrong class is said")
+	_equal(
+		_errors.take_containing("Cannot convert argument 1 from Object to Object"),
+		true,
+		"wrong class is said"
+	)
 	_equal(probe.callv("echo_ref", [node]), null, "an object that is not counted")
 	_errors.take()
 	node.free()
@@ -185,7 +194,11 @@ func test_exceptions_become_engine_errors() -> void:
 	var probe: BinderProbe = BinderProbe.new()
 	var number: int = probe.throw_exception("first")
 	_equal(number, 0, "a typed call gives the default")
-	_equal(_errors.take_containing("BinderProbe::throw_exception failed: first"), true, "and says what failed")
+	_equal(
+		_errors.take_containing("BinderProbe::throw_exception failed: first"),
+		true,
+		"and says what failed"
+	)
 	_equal(probe.call("throw_exception", "second"), null, "a call by name gives null")
 	_equal(_errors.take_containing("second"), true, "and says what failed")
 	var dictionary: Dictionary = probe.throw_something()
@@ -216,7 +229,9 @@ func test_packed_arrays_are_read_in_place_and_filled_by_pointer() -> void:
 	_equal(probe.address(values), probe.address(values), "the same memory at each call")
 	var same_memory: PackedFloat64Array = values
 	_equal(probe.address(same_memory), probe.address(values), "shared memory is not copied")
-	_equal(probe.ramp(3), PackedVector2Array([Vector2.ZERO, Vector2(1, -1), Vector2(2, -2)]), "ramp")
+	_equal(
+		probe.ramp(3), PackedVector2Array([Vector2.ZERO, Vector2(1, -1), Vector2(2, -2)]), "ramp"
+	)
 	_equal(probe.ramp(0).size(), 0, "empty ramp")
 	probe.free()
 
@@ -260,12 +275,24 @@ func test_properties_have_hints_and_values() -> void:
 
 func test_constants_and_enumerations() -> void:
 	_equal(BinderProbe.ANSWER, 42, "constant")
-	_equal(ClassDB.class_get_enum_list("BinderProbe", true), PackedStringArray(["Mode", "Axis"]), "enumerations")
-	_equal(ClassDB.class_get_enum_constants("BinderProbe", "Axis"), PackedStringArray(["X", "Y"]), "members")
+	_equal(
+		ClassDB.class_get_enum_list("BinderProbe", true),
+		PackedStringArray(["Mode", "Axis"]),
+		"enumerations"
+	)
+	_equal(
+		ClassDB.class_get_enum_constants("BinderProbe", "Axis"),
+		PackedStringArray(["X", "Y"]),
+		"members"
+	)
 	_equal(BinderProbe.MODE_BUSY, 7, "value")
 	for method: Dictionary in ClassDB.class_get_method_list("BinderProbe", true):
 		if method["name"] == "set_mode":
-			_equal(method["args"][0]["class_name"], &"BinderProbe.Mode", "an argument names its enumeration")
+			_equal(
+				method["args"][0]["class_name"],
+				&"BinderProbe.Mode",
+				"an argument names its enumeration"
+			)
 			_equal(method["args"][0]["name"], "mode", "an argument has a name")
 
 
@@ -290,7 +317,8 @@ func test_references_are_counted_and_nothing_leaks() -> void:
 		typed = probe.echo_ref(by_name)
 		by_name = probe.call("echo_ref", typed)
 		probe.keep(typed)
-		_equal(by_name.get_reference_count(), 3, "two names and C++") if i == 0 else null
+		if i == 0:
+			_equal(by_name.get_reference_count(), 3, "two names and C++")
 	_equal(BinderProbe.count_counted_alive(), 1, "the one that C++ holds")
 	_equal(probe.kept_references(), 1, "held once")
 	var held: BinderProbeCounted = probe.make_counted()
@@ -312,7 +340,11 @@ func test_the_singleton_is_registered_and_its_thread_runs() -> void:
 	_equal(Engine.get_singleton("ProbeServer"), ProbeServer, "global name")
 	_equal(ProbeServer.get_startups(), 1, "startup callback")
 	_equal(ProbeServer.get_beats() > 0, true, "thread")
-	_equal(ProbeServer.get_frames() <= Engine.get_process_frames() + 1, true, "frame callback once a frame")
+	_equal(
+		ProbeServer.get_frames() <= Engine.get_process_frames() + 1,
+		true,
+		"frame callback once a frame"
+	)
 	_equal(ClassDB.can_instantiate("ProbeServer"), false, "scripts cannot make a second one")
 
 

@@ -90,9 +90,9 @@ struct TypedMethodBind final : MethodBind {
     using Result = std::remove_cvref_t<Return>;
     static constexpr std::size_t k_count = sizeof...(Params);
     static constexpr auto k_indices = std::index_sequence_for<Params...>();
-    static_assert(((!std::is_lvalue_reference_v<Params> ||
-                    std::is_const_v<std::remove_reference_t<Params>>)&&...),
-                  "A bound method takes its arguments by value or by const reference.");
+    static_assert(
+        ((!std::is_lvalue_reference_v<Params> || std::is_const_v<std::remove_reference_t<Params>>) && ...),
+        "A bound method takes its arguments by value or by const reference.");
 
     Function function;
 
