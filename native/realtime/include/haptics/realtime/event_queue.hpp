@@ -11,12 +11,12 @@
 namespace haptics {
 
 /// Single producer, single consumer ring of N events (N a power of two), oldest first. Every method is
-/// wait-free and allocates nothing. A full queue keeps what it has: the newcomer is dropped, because a reader
-/// who sees the beginning of a burst can tell its cause.
+/// wait-free and allocates nothing of its own; T's assignment must not throw. A full queue keeps what it has:
+/// the newcomer is dropped, because a reader who sees the beginning of a burst can tell its cause.
 template <typename T, std::size_t N>
 class EventQueue {
     static_assert(N >= 2 && (N & (N - 1)) == 0, "the capacity of an EventQueue is a power of two");
-    static_assert(std::is_nothrow_copy_assignable_v<T> && std::is_default_constructible_v<T>);
+    static_assert(std::is_default_constructible_v<T>);
 
   public:
     EventQueue() = default;
