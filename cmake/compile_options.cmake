@@ -20,6 +20,8 @@ add_library(haptics_options INTERFACE)
 target_compile_options(haptics_options INTERFACE
     -Wall -Wextra -Wpedantic -Werror -Wshadow -Wconversion -Wdouble-promotion -Wnon-virtual-dtor
     -Woverloaded-virtual -Wold-style-cast -Wcast-align -Wunused -Wformat=2 -Wimplicit-fallthrough
+    # what a designated initializer leaves out is zero by the language's own rule
+    -Wno-missing-field-initializers
     # the same bits from every build and compiler: no fused multiply-add behind our back
     -ffp-contract=off
     # messages name our files from the root of the project
@@ -27,6 +29,10 @@ target_compile_options(haptics_options INTERFACE
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # a unique symbol would keep the library mapped, and the editor would run the old code after a reload
     target_compile_options(haptics_options INTERFACE -fno-gnu-unique -Wduplicated-cond -Wlogical-op)
+    if(CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+        # false alarms on string concatenation (gcc bug 105651)
+        target_compile_options(haptics_options INTERFACE -Wno-restrict)
+    endif()
 endif()
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
     target_compile_options(haptics_options INTERFACE -march=x86-64)

@@ -46,10 +46,11 @@ def prepare(build: Path, out: Path) -> list[tuple[Path, str]]:
         source = Path(entry["file"])
         if not source.is_relative_to(ROOT / "native"):
             continue
-        entry["command"] = " ".join(word for word in entry["command"].split() if word not in GCC_ONLY)
+        words = [word for word in entry["command"].split() if word not in GCC_ONLY]
+        entry["command"] = " ".join(words)
         kept.append(entry)
         digest = hashlib.sha256(rules + entry["command"].encode())
-        for name in sorted({str(source), *headers.get(entry["output"], [])}):
+        for name in sorted({str(source), *headers.get(words[words.index("-o") + 1], [])}):
             if name.startswith(str(ROOT)):
                 if name not in texts:
                     texts[name] = Path(name).read_bytes() if Path(name).exists() else b""
