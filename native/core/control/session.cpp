@@ -32,6 +32,22 @@ double spring_energy(const Vec3& stiffness, const Wrench& force) {
 
 } // namespace
 
+std::vector<FigureError> validate(const SessionSettings& s) {
+    FigureCheck check;
+    check.range("rate", s.step > 0.0 ? 1.0 / s.step : 0.0, 250.0, 10000.0, "Hz", "1000 Hz is the default.");
+    check.range("mapping.scale", s.mapping.scale, 0.01, 100.0, "m/m", "1 shows the device's motion at its true size.");
+    check.range("mapping.rotation", s.mapping.rotation, -10.0, 10.0, "rad", "0 is the default.");
+    for (int i = 0; i < 3; ++i)
+        check.range("mapping.offset", s.mapping.offset(i), -100.0, 100.0, "m", "Keep the workspace near the world node.");
+    for (int i = 0; i < 3; ++i) {
+        check.range("coupling.stiffness", s.gains.stiffness(i), 0.0, 1e9, "N/m", "0 chooses it from device mass and rate.");
+        check.range("coupling.damping", s.gains.damping(i), 0.0, 1e9, "N s/m", "0 chooses it from device mass and rate.");
+        check.range("reading_error", s.reading_error(i), 0.0, 0.1, "m", "Half an encoder step.");
+    }
+    check.range("device_delay", s.device_delay, 0.0, 1.0, "s", "Most devices add less than 0.001 s.");
+    return check.take();
+}
+
 Session::Session(const SessionSettings& settings, const Model& model, const OutputGate& gate, DevicePort& device,
                  const Pose& start)
     : settings_(settings)
@@ -68,6 +84,11 @@ void Session::arm() {
 void Session::disarm() {
     arm_wanted_ = false;
     gate_.disarm();
+}
+
+void Session::shut_off() {
+    disarm();
+    device_.write(Wrench::Zero());
 }
 
 void Session::read_device() {
@@ -205,6 +226,13 @@ void Session::write_report(const GateOutput& gated, const Wrench& wanted) {
             c.position += point.weight * point.position;
             c.penetration = std::max(c.penetration, -point.gap);
         }
+    }
+    r.run.max_force = std::max(r.run.max_force, r.force.head<2>().norm());
+    r.run.max_penetration = std::max(r.run.max_penetration, r.max_penetration);
+    r.run.collisions += static_cast<std::uint64_t>(r.colliding);
+    if (held_ && gate_.armed()) {
+        r.run.error_sum += (r.grip - r.device).head<2>().squaredNorm();
+        ++r.run.error_count;
     }
     r.movable_count = data_->movable_count;
     for (int i = 0; i < data_->movable_count; ++i)

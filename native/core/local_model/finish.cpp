@@ -27,10 +27,10 @@ void add_event(StepOutput& output, ContactEventKind kind, std::uint64_t body, do
         return;
     }
     ContactEvent& e = output.event[static_cast<std::size_t>(output.event_count++)];
-    e = ContactEvent{kind, body, time, Vec2(0.0, 0.0), Vec2(0.0, 1.0), impulse};
+    e = ContactEvent{kind, body, time, {0.0, 0.0}, {0.0, 1.0}, impulse};
     if (patch != nullptr) {
-        e.position = patch->point[0].position;
-        e.normal = patch->normal;
+        e.position = {patch->point[0].position.x(), patch->point[0].position.y()};
+        e.normal = {patch->normal.x(), patch->normal.y()};
     }
 }
 

@@ -181,6 +181,10 @@ void take_neighborhood(const Neighborhood& n, Data& data) {
     local::move_neighbors(data, 0.0);
 }
 
+void pass_time(Data& data, double seconds) {
+    local::move_neighbors(data, seconds);
+}
+
 namespace local {
 
 void move_neighbors(Data& data, double dt) {

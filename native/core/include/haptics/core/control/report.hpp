@@ -26,6 +26,19 @@ struct ContactReport {
     double penetration{0.0};
 };
 
+/// Figures of the whole run so far.
+struct RunFigures {
+    /// Largest force that left the gate, N.
+    double max_force{0.0};
+    /// Deepest overlap, m.
+    double max_penetration{0.0};
+    /// Sum of squared distances between handle and grip while held and armed (m^2), and how many.
+    double error_sum{0.0};
+    std::uint64_t error_count{0};
+    /// Collisions resolved, patches counted.
+    std::uint64_t collisions{0};
+};
+
 struct HapticReport {
     static constexpr int k_max_contacts = 16;
 
@@ -73,6 +86,7 @@ struct HapticReport {
     std::array<ContactReport, k_max_contacts> contact_list;
     std::int32_t movable_count{0};
     std::array<MovableBelief, k_max_movables> movable;
+    RunFigures run;
     /// Device's buttons.
     std::uint32_t buttons{0};
 };

@@ -12,6 +12,7 @@
 #include <haptics/core/safety/velocity_estimator.hpp>
 
 #include <memory>
+#include <vector>
 
 namespace haptics {
 
@@ -32,6 +33,9 @@ struct SessionSettings {
     bool hold_at_start{true};
 };
 
+/// Every setting out of range, with its remedy. Allocates; not for the haptic loop.
+std::vector<FigureError> validate(const SessionSettings& settings);
+
 /// Owns the local model's data and the controller's state; uses a device and a gate. Loop thread only, but for the constructor.
 class Session {
   public:
@@ -40,6 +44,8 @@ class Session {
 
     /// Takes a newer neighborhood.
     void take(const Neighborhood& neighborhood) { take_neighborhood(neighborhood, *data_); }
+    /// The loop left out `seconds`: neighbors go on, the proxy waits.
+    void skip(double seconds) { pass_time(*data_, seconds); }
     /// One step of the loop's period. Allocation-free, bounded, never throws.
     void step();
 
@@ -48,6 +54,8 @@ class Session {
     /// Asks the gate to arm; the answer is in the next report's `armed` and in `arm_result()`.
     void arm();
     void disarm();
+    /// Writes zero force to the device and disarms: the last thing before the loop ends.
+    void shut_off();
     /// Latches a fault found elsewhere.
     void raise(Fault fault) { gate_.raise(fault); }
     /// Fades forces out or back in within 50 ms (pause, a scene that stalls).

@@ -43,9 +43,9 @@ struct ContactEvent {
     std::uint64_t body{0};
     /// Loop-clock time, s.
     double time{0.0};
-    /// Where, and the normal out of the neighbor, scene axes.
-    Vec2 position{0.0, 0.0};
-    Vec2 normal{0.0, 1.0};
+    /// Where, and the normal out of the neighbor, scene axes (x, y); plain numbers, so that events cross threads by copying.
+    std::array<double, 2> position{0.0, 0.0};
+    std::array<double, 2> normal{0.0, 1.0};
     /// Normal impulse of an impact, N s; 0 otherwise.
     double impulse{0.0};
 };
@@ -89,6 +89,9 @@ void reset(const Model& model, Data& data, const Pose& pose);
 
 /// Takes a newer snapshot: contact memory and movable bodies survive. Does nothing when the sequence is not newer.
 void take_neighborhood(const Neighborhood& neighborhood, Data& data);
+
+/// Time passes without a step (the loop was late): kinematic neighbors go on, proxy and contacts wait.
+void pass_time(Data& data, double seconds);
 
 /// Advances the proxy and its movable neighbors by `dt` (s, > 0). Allocation-free and bounded.
 void step(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output);

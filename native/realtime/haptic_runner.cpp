@@ -1,0 +1,156 @@
+#include <haptics/realtime/haptic_runner.hpp>
+#include <haptics/realtime/csv_writer.hpp>
+#include <haptics/realtime/loop_clock.hpp>
+#include <haptics/realtime/run_columns.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptics {
+
+HapticRunner::HapticRunner(std::unique_ptr<Session> session, StepHook* hook)
+    : session_(std::move(session))
+    , hook_(hook)
+    , clock_(1.0 / session_->settings().step) {}
+
+HapticRunner::~HapticRunner() {
+    stop();
+}
+
+void HapticRunner::record(double seconds) {
+    recorder_.reset();
+    rows_.clear();
+    most_rows_ = static_cast<std::size_t>(std::ceil(std::max(seconds, 0.0) / session_->settings().step));
+    if (most_rows_ == 0)
+        return;
+    constexpr double k_ring = 4.0; // s that the main thread may be late
+    const double ring = std::ceil(k_ring / session_->settings().step);
+    recorder_ = std::make_unique<StepRecorder>(run_column_names(), static_cast<std::size_t>(ring));
+}
+
+void HapticRunner::collect() {
+    if (recorder_ == nullptr)
+        return;
+    recorder_->drain([this](std::span<const double> row) {
+        if (rows_.size() < most_rows_ * row.size())
+            rows_.insert(rows_.end(), row.begin(), row.end());
+    });
+}
+
+bool HapticRunner::write_recording(const std::string& path, std::string& error) {
+    collect();
+    CsvWriter writer;
+    const std::span<const double> all(rows_);
+    const std::size_t width = run_column_names().size();
+    bool good = writer.open(path, run_column_names());
+    for (std::size_t i = 0; good && i < all.size(); i += width)
+        good = writer.write_row(all.subspan(i, width));
+    good = good && writer.finish();
+    error = writer.error();
+    return good;
+}
+
+bool HapticRunner::start(const LoopOptions& options) {
+    start_ns_ = loop_clock_ns();
+    return thread_.start(*this, options);
+}
+
+void HapticRunner::stop() noexcept {
+    thread_.stop();
+}
+
+double HapticRunner::now() const noexcept {
+    if (thread_.running())
+        return static_cast<double>(loop_clock_ns() - start_ns_) * 1e-9;
+    return static_cast<double>(clock_.scene_ns()) * 1e-9;
+}
+
+int HapticRunner::advance(double seconds) {
+    const int due = clock_.begin_tick(seconds);
+    for (int left = due; left > 0; --left) {
+        const std::int64_t begin = loop_clock_ns();
+        step(clock_.next());
+        lockstep_step_time_.add(loop_clock_ns() - begin);
+        if (recorder_ != nullptr && recorder_->recorded() % 1024 == 0)
+            collect();
+    }
+    collect();
+    return due;
+}
+
+LoopStatistics HapticRunner::statistics() const noexcept {
+    LoopStatistics s = thread_.statistics();
+    if (s.steps == 0) {
+        s.steps = session_->report().step;
+        s.step_time = lockstep_step_time_.snapshot();
+    }
+    return s;
+}
+
+void HapticRunner::take_commands() noexcept {
+    commands_.drain([this](RunnerCommand command) {
+        switch (command) {
+        case RunnerCommand::hold:
+            session_->hold(true);
+            break;
+        case RunnerCommand::release:
+            session_->hold(false);
+            break;
+        case RunnerCommand::arm:
+            session_->arm();
+            break;
+        case RunnerCommand::disarm:
+            session_->disarm();
+            break;
+        case RunnerCommand::pause:
+            paused_by_scene_ = true;
+            break;
+        case RunnerCommand::resume:
+            paused_by_scene_ = false;
+            break;
+        case RunnerCommand::stop:
+            session_->raise(Fault::release_the_stop);
+            break;
+        }
+    });
+}
+
+void HapticRunner::watch_scene(double time) noexcept {
+    stalled_ = seen_snapshot_ && time - newest_snapshot_ > k_stall;
+    session_->set_paused(paused_by_scene_ || stalled_);
+}
+
+void HapticRunner::step(const StepTime& time) {
+    if (time.skipped > 0)
+        session_->skip(static_cast<double>(time.skipped) * time.dt);
+    const auto newest = neighborhoods_.try_read();
+    if (newest.is_new) {
+        session_->take(newest.value);
+        newest_snapshot_ = newest.value.time;
+        seen_snapshot_ = true;
+    }
+    take_commands();
+    watch_scene(time.time());
+    if (hook_ != nullptr)
+        hook_->before_step(*session_);
+    session_->step();
+    publish_results();
+}
+
+void HapticRunner::publish_results() noexcept {
+    const StepOutput& output = session_->output();
+    for (int i = 0; i < output.event_count; ++i)
+        events_.try_push(output.event[static_cast<std::size_t>(i)]);
+    if (recorder_ != nullptr) {
+        std::array<double, k_run_columns> row;
+        fill_run_row(session_->report(), row);
+        recorder_->try_append(row);
+    }
+    reports_.try_write(session_->report());
+}
+
+void HapticRunner::loop_ends() noexcept {
+    session_->shut_off();
+}
+
+} // namespace haptics
