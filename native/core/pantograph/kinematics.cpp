@@ -31,6 +31,8 @@ constexpr double k_pi = std::numbers::pi;
 // least |e x d| that is divided by: keeps rates finite at full stretch (m^2)
 constexpr double k_least_moment = 1.0e-9;
 constexpr int k_refinements = 4;
+// no handle is that far away (m, rad)
+constexpr double k_absurd = 1.0e6;
 
 double wrap(double angle) {
     return std::remainder(angle, 2.0 * k_pi);
@@ -67,7 +69,8 @@ PantographKinematics::PantographKinematics(const PantographGeometry& geometry)
 
 PantographState PantographKinematics::locate(const Pose& pose) const {
     PantographState state;
-    const bool finite = pose.allFinite();
+    // a pose beyond all devices is as good as none, and its squares overflow
+    const bool finite = pose.allFinite() && pose.cwiseAbs().maxCoeff() < k_absurd;
     const Pose used = finite ? pose : geometry_.home;
     const Transform handle(freedoms() == 3 ? used : Pose(used.x(), used.y(), 0.0));
     state.reachable = finite;
