@@ -32,7 +32,8 @@ bool singleton_lives_on(const StringName& name);
 
 /// Makes the one T and registers it under the name of its class. After a hot reload the engine still holds
 /// the object of before, which then gets its new C++ side from the engine itself: scripts that keep it stay
-/// right. T keeps its own instance pointer: set in the constructor, cleared in the destructor.
+/// right. But the engine restores none of its stored properties, as it does for all other objects. T keeps
+/// its own instance pointer: set in the constructor, cleared in the destructor.
 template <class T>
 void register_engine_singleton() {
     if (!Engine::get_singleton()->has_singleton(T::get_class_static())) {
