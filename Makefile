@@ -1,0 +1,40 @@
+# Thin: every command is a script in tools/ or a CMake preset.
+SHELL := /bin/bash
+.DEFAULT_GOAL := help
+.PHONY: help demo test editor run build bench lint format clean
+
+PRESET ?= release
+OUT ?= build/run
+SECONDS ?= 5
+
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@echo
+	@echo "  Missing tools are fetched once into $${GODOT_HAPTICS_CACHE:-$${XDG_CACHE_HOME:-~/.cache}/godot-haptics}; GODOT=/path names a Godot of yours."
+
+demo: ## the testbed: in a window where there is a display, else 10 s headless with a summary
+	@tools/run/demo
+
+test: ## all tests and checks (GUT=1: the suites through GUT itself, from addons/gut)
+	@tools/run/test $(if $(filter 1,$(GUT)),--gut)
+
+editor: ## the project in Godot's editor
+	@tools/run/editor
+
+run: ## a scene headless, measured: SCENE=res://… [SECONDS=5] [LOCKSTEP=1] [OUT=build/run] writes OUT/run.json, OUT/run.csv
+	@tools/run/scene "$(SCENE)" --seconds=$(SECONDS) --out="$(OUT)" --summary $(if $(filter 1,$(LOCKSTEP)),--lockstep)
+
+build: ## the native library and tests (PRESET=release|debug|asan|tsan|clang)
+	@tools/run/build $(PRESET)
+
+bench: ## the benchmarks (ARGS="--benchmark_filter=…"); JSON in build/bench.json
+	@tools/run/bench $(ARGS)
+
+lint: ## room rules, formatting, clang-tidy, gdlint
+	@tools/run/test --only lint
+
+format: ## formats all C++ and GDScript
+	@tools/lint/format
+
+clean: ## removes what was built here; what was fetched stays in the cache
+	rm -rf build .godot compile_commands.json addons/haptics/bin/*.so
