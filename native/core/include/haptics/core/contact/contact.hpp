@@ -35,6 +35,29 @@ struct PatchMemory {
     double tangent_force{0.0};
 };
 
+/// The side from which a patch is felt. Detection writes it and reads it back one step later, so that a body that was pushed
+/// through a thin wall still feels the face that it came through. Ids, not indices: they survive a geometry update.
+struct PatchSide {
+    /// Ids of the two bodies and of the two pieces that gave the deepest point.
+    std::uint64_t id_a{0};
+    std::uint64_t id_b{0};
+    std::uint32_t piece_a{0};
+    std::uint32_t piece_b{0};
+    /// Body a is a link of the tool; body b never moves (all fixed bodies count as one solid).
+    bool tool_a{false};
+    bool fixed_b{false};
+    /// Owner of the face along whose normal the gaps are measured; none between two rounded corners.
+    enum class Face : std::uint8_t { none, of_a, of_b } face{Face::none};
+    /// Edge of that face on its piece.
+    std::int32_t edge{0};
+    /// Normal (out of b into a) in the axes of the face's owner (b without a face), and the offset of the face's plane from
+    /// that body's reference point, m.
+    Vec2 normal{0.0, 1.0};
+    double offset{0.0};
+    /// Offset of the same plane from the origin of the scene, m, in case the owner is gone from the snapshot.
+    double scene_offset{0.0};
+};
+
 /// Bodies in a patch are indices into the step's body list: tool links first, then the neighbors of the snapshot.
 struct Patch {
     std::int32_t body_a{0};
@@ -49,6 +72,7 @@ struct Patch {
     /// Combined surface of the two sides.
     Surface surface;
     PatchMemory memory;
+    PatchSide side;
 };
 
 /// Most patches of one step; what exceeds it is counted as overflow, the deepest are kept.

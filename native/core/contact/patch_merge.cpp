@@ -1,0 +1,139 @@
+/// Contacts belong to one patch when they are of the same body a, lie on one plane of b's matter (all fixed matter with one
+/// surface is one solid) and push in nearly the same direction. Of the points of a patch the two ends along the tangent stay:
+/// with a linear gap in between they give the same force and torque as all of them.
+///
+/// Shares. Level ends have a half each. When one end is higher, its share w falls with the rise r = (g_up - g_low) / tilt as
+///     w = 1/2 (1 - 3 r^2 + 2 r^3),
+/// and is gone at r = 1: a box that is tilted onto its corner feels the full stiffness of the wall there, and nothing jumps on the
+/// way. (A share that follows the depths instead would be stiffer to turning than the wall, and chatter on hard walls.)
+
+#include "patch_merge.hpp"
+
+#include <algorithm>
+#include <memory>
+
+namespace haptics::contact {
+namespace {
+
+/// Planes that differ by less are one, m and sine.
+constexpr double k_same_plane = 1e-5;
+constexpr double k_same_plane_turn = 2e-3;
+/// Directions of push that may merge, cosine of 0.1 rad.
+constexpr double k_same_push = 0.995;
+/// A point that is deeper than both ends by more than this is the patch on its own, m.
+constexpr double k_proud = 1e-6;
+/// Gaps that differ by less are equal, m.
+constexpr double k_tie = 1e-12;
+
+bool same_surface(const Surface& p, const Surface& q) {
+    return p.stiffness == q.stiffness && p.damping == q.damping && p.static_friction == q.static_friction &&
+           p.dynamic_friction == q.dynamic_friction && p.restitution == q.restitution;
+}
+
+bool one_patch(const Draft& p, const Draft& q) {
+    const PatchSide& s = p.patch.side;
+    const PatchSide& t = q.patch.side;
+    if (s.id_a != t.id_a || s.tool_a != t.tool_a || s.fixed_b != t.fixed_b || (!s.fixed_b && s.id_b != t.id_b))
+        return false;
+    if (p.patch.normal.dot(q.patch.normal) < k_same_push || !same_surface(p.surface_b, q.surface_b))
+        return false;
+    const double turn = cross(p.plane_normal, q.plane_normal);
+    return std::abs(turn) < k_same_plane_turn && p.plane_normal.dot(q.plane_normal) > 0.0 &&
+           std::abs(p.plane_normal.dot(q.patch.point[0].position) - p.plane_offset -
+                    (q.plane_normal.dot(q.patch.point[0].position) - q.plane_offset)) < k_same_plane;
+}
+
+bool leads(const Draft& p, const Draft& q) {
+    const double difference = smallest_gap(p.patch) - smallest_gap(q.patch);
+    if (std::abs(difference) > k_tie)
+        return difference < 0.0;
+    if (p.patch.feature_b != q.patch.feature_b)
+        return p.patch.feature_b < q.patch.feature_b;
+    return p.patch.feature_a < q.patch.feature_a;
+}
+
+/// Points of both, reduced to the two ends.
+void join(Patch& kept, const Patch& other) {
+    std::array<PatchPoint, 4> point;
+    int count = 0;
+    for (int i = 0; i < kept.point_count; ++i)
+        point[static_cast<std::size_t>(count++)] = kept.point[static_cast<std::size_t>(i)];
+    for (int i = 0; i < other.point_count; ++i)
+        point[static_cast<std::size_t>(count++)] = other.point[static_cast<std::size_t>(i)];
+    const Vec2 tangent = perpendicular(kept.normal);
+    std::size_t first = 0;
+    std::size_t last = 0;
+    std::size_t deepest = 0;
+    for (std::size_t i = 1; i < static_cast<std::size_t>(count); ++i) {
+        if (tangent.dot(point[i].position - point[first].position) < 0.0)
+            first = i;
+        if (tangent.dot(point[i].position - point[last].position) > 0.0)
+            last = i;
+        if (point[i].gap < point[deepest].gap)
+            deepest = i;
+    }
+    if (point[deepest].gap < std::min(point[first].gap, point[last].gap) - k_proud)
+        first = last = deepest;
+    kept.point_count = first == last ? 1 : 2;
+    kept.point[0] = point[first];
+    if (first != last)
+        kept.point[1] = point[last];
+}
+
+} // namespace
+
+void DraftList::add(const Draft& added) {
+    for (int i = 0; i < count; ++i) {
+        Draft& present = (*this)[i];
+        if (!one_patch(present, added))
+            continue;
+        if (added.rank > present.rank)
+            return;
+        if (added.rank < present.rank) {
+            present = added;
+            return;
+        }
+        const double reach = std::max(present.reach, added.reach);
+        if (leads(added, present)) {
+            Draft merged = added;
+            join(merged.patch, present.patch);
+            present = merged;
+        } else {
+            join(present.patch, added.patch);
+        }
+        present.reach = reach;
+        return;
+    }
+    if (count < k_max_patches) {
+        std::construct_at(&(*this)[count], added);
+        ++count;
+        return;
+    }
+    ++dropped;
+    int shallowest = 0;
+    for (int i = 1; i < count; ++i) {
+        if (smallest_gap((*this)[i].patch) > smallest_gap((*this)[shallowest].patch))
+            shallowest = i;
+    }
+    if (smallest_gap(added.patch) < smallest_gap((*this)[shallowest].patch))
+        (*this)[shallowest] = added;
+}
+
+void share_out(Patch& patch, double tilt) {
+    patch.point[0].weight = 1.0;
+    if (patch.point_count < 2)
+        return;
+    const std::size_t low = patch.point[0].gap <= patch.point[1].gap ? 0 : 1;
+    const double rise = (patch.point[1 - low].gap - patch.point[low].gap) / tilt;
+    if (rise >= 1.0) {
+        patch.point[0] = patch.point[low];
+        patch.point[0].weight = 1.0;
+        patch.point_count = 1;
+        return;
+    }
+    const double upper = 0.5 * (1.0 - rise * rise * (3.0 - 2.0 * rise));
+    patch.point[1 - low].weight = upper;
+    patch.point[low].weight = 1.0 - upper;
+}
+
+} // namespace haptics::contact

@@ -1,0 +1,187 @@
+/// A patch goes on when the same two bodies (all fixed bodies count as one) touch at nearly the same place in nearly the same
+/// direction; the same features settle it first. The mismatch of two patches is
+///     distance of their nearest points + k_turn_length * |n - n'|,
+/// pairs are taken from the smallest mismatch upward, and each patch is used once: a box that rolls from its face onto its corner,
+/// slides over a seam or turns around a rounded corner keeps its state.
+
+#include "patch_tracking.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace haptics::contact {
+namespace {
+
+using Face = PatchSide::Face;
+
+/// Mismatch of a turn by one radian, m.
+constexpr double k_turn_length = 0.005;
+/// Cosine of the largest turn of the normal from step to step (60 degrees).
+constexpr double k_same_way = 0.5;
+/// How far a patch may jump beyond the reach of the pair, m.
+constexpr double k_jump = 0.003;
+/// Planes of neighboring pieces that count as one, m and sine.
+constexpr double k_same_plane = 1e-5;
+constexpr double k_same_plane_turn = 1e-3;
+/// Depth from which a one-way piece lets pass what has no history, m.
+constexpr double k_one_way_depth = 1e-6;
+
+const Body* find(const BodySet& set, std::uint64_t id) {
+    for (std::int32_t i = 0; i < set.body_count; ++i) {
+        const Body& body = set.body[static_cast<std::size_t>(i)];
+        if (body.id == id)
+            return &body;
+    }
+    return nullptr;
+}
+
+bool same_pair(const PatchSide& p, const PatchSide& q) {
+    return p.id_a == q.id_a && p.tool_a == q.tool_a && p.fixed_b == q.fixed_b && (p.fixed_b || p.id_b == q.id_b);
+}
+
+/// Edge of b on the given plane, -1 when there is none.
+int edge_on_plane(const PlacedConvex& b, const Vec2& normal, double offset) {
+    for (int edge = 0; edge < b.faces(); ++edge) {
+        if (b.n(edge).dot(normal) <= 0.0 || std::abs(cross(b.n(edge), normal)) > k_same_plane_turn ||
+            is_hidden(*b.shape, edge))
+            continue;
+        const double start = std::abs(normal.dot(b.v(edge)) + b.radius - offset);
+        const double end = std::abs(normal.dot(b.v(b.next(edge))) + b.radius - offset);
+        if (std::min(start, end) < k_same_plane)
+            return edge;
+    }
+    return -1;
+}
+
+double distance(const Patch& p, const Patch& q) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < p.point_count; ++i)
+        for (int k = 0; k < q.point_count; ++k)
+            nearest = std::min(nearest, (p.point[static_cast<std::size_t>(i)].position -
+                                         q.point[static_cast<std::size_t>(k)].position).norm());
+    return nearest;
+}
+
+double mismatch(const Remembered& old, const Draft& draft) {
+    if (!same_pair(old.patch->side, draft.patch.side))
+        return std::numeric_limits<double>::infinity();
+    const double way = old.normal.dot(draft.patch.normal);
+    if (way < k_same_way)
+        return std::numeric_limits<double>::infinity();
+    if (old.patch->feature_a == draft.patch.feature_a && old.patch->feature_b == draft.patch.feature_b)
+        return -1.0;
+    const double apart = distance(*old.patch, draft.patch);
+    if (apart > k_jump + draft.reach)
+        return std::numeric_limits<double>::infinity();
+    return apart + k_turn_length * (old.normal - draft.patch.normal).norm();
+}
+
+} // namespace
+
+void recall(const BodySet& tool, const BodySet& neighbors, const PatchList& previous, Memory& memory) {
+    memory.count = 0;
+    for (std::int32_t i = 0; i < previous.count; ++i) {
+        const Patch& patch = previous.patch[static_cast<std::size_t>(i)];
+        Remembered& entry = memory.patch[static_cast<std::size_t>(memory.count++)];
+        entry.patch = &patch;
+        entry.gap = smallest_gap(patch);
+        entry.normal = patch.normal;
+        entry.offset = patch.side.scene_offset;
+        const bool of_a = patch.side.face == Face::of_a;
+        const Body* owner = find(of_a && patch.side.tool_a ? tool : neighbors, of_a ? patch.side.id_a : patch.side.id_b);
+        if (owner != nullptr) {
+            entry.normal = rotate(owner->pose.z(), patch.side.normal);
+            entry.offset = entry.normal.dot(owner->pose.head<2>()) + patch.side.offset;
+        }
+    }
+}
+
+SideHint side_of(const Memory& memory, const PatchSide& pair, const PlacedConvex& a, const PlacedConvex& b) {
+    SideHint hint;
+    double lowest = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < memory.count; ++i) {
+        const Remembered& old = memory.patch[static_cast<std::size_t>(i)];
+        const PatchSide& side = old.patch->side;
+        if (!same_pair(side, pair) || old.gap >= lowest)
+            continue;
+        const bool same_b = side.id_b == pair.id_b && side.piece_b == pair.piece_b;
+        const bool same_pieces = same_b && side.piece_a == pair.piece_a;
+        SideHint found;
+        if (side.face == Face::of_b) {
+            found.edge = edge_on_plane(b, old.normal, old.offset);
+            if (found.edge >= 0)
+                found.face = Face::of_b;
+        } else if (side.face == Face::of_a && same_pieces && side.edge < a.faces() && !is_hidden(*a.shape, side.edge)) {
+            found.face = Face::of_a;
+            found.edge = side.edge;
+        }
+        if (found.face == Face::none && !same_pieces)
+            continue;
+        found.normal = old.normal;
+        found.known = true;
+        hint = found;
+        lowest = old.gap;
+    }
+    return hint;
+}
+
+double last_depth(const Memory& memory, std::uint64_t id_a, bool tool_a) {
+    double depth = 0.0;
+    for (int i = 0; i < memory.count; ++i) {
+        const Remembered& old = memory.patch[static_cast<std::size_t>(i)];
+        if (old.patch->side.id_a == id_a && old.patch->side.tool_a == tool_a)
+            depth = std::max(depth, -old.gap);
+    }
+    return depth;
+}
+
+void carry_over(const Memory& memory, DraftList& drafts) {
+    // match, best pairs first
+    std::array<bool, k_max_patches> used{};
+    for (int round = 0; round < drafts.count; ++round) {
+        double best = std::numeric_limits<double>::infinity();
+        int best_old = -1;
+        int best_new = -1;
+        for (int i = 0; i < memory.count; ++i) {
+            if (used[static_cast<std::size_t>(i)])
+                continue;
+            for (int k = 0; k < drafts.count; ++k) {
+                const Draft& draft = drafts[k];
+                if (draft.previous >= 0)
+                    continue;
+                const double m = mismatch(memory.patch[static_cast<std::size_t>(i)], draft);
+                if (m < best) {
+                    best = m;
+                    best_old = i;
+                    best_new = k;
+                }
+            }
+        }
+        if (best_old < 0)
+            break;
+        used[static_cast<std::size_t>(best_old)] = true;
+        Draft& draft = drafts[best_new];
+        draft.previous = best_old;
+        draft.patch.memory = memory.patch[static_cast<std::size_t>(best_old)].patch->memory;
+    }
+
+    // drop what cannot be
+    for (int k = drafts.count - 1; k >= 0; --k) {
+        const Draft& draft = drafts[k];
+        if (draft.previous >= 0)
+            continue;
+        const double gap = smallest_gap(draft.patch);
+        bool drop = draft.one_way && gap < -k_one_way_depth;
+        for (int i = 0; i < drafts.count && !drop; ++i) {
+            const Draft& other = drafts[i];
+            if (i == k || !same_pair(draft.patch.side, other.patch.side) || smallest_gap(other.patch) >= 0.0)
+                continue;
+            drop = draft.rank == Rank::inside ? other.rank != Rank::inside
+                                              : other.previous >= 0 && gap < -(draft.reach + k_jump);
+        }
+        if (drop)
+            drafts.remove(k);
+    }
+}
+
+} // namespace haptics::contact
