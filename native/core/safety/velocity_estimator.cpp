@@ -1,10 +1,11 @@
-// A line from the newest sample x_0 with slope v explains sample x_j, taken t_j earlier, when |x_0 - v t_j -
-// x_j| <= error, that is
-//   (x_0 - x_j - error) / t_j <= v <= (x_0 - x_j + error) / t_j.
-// All samples up to age n - 1 leave an interval of slopes; the end-to-end slope of age n, (x_0 - x_n) / t_n,
-// explains them when it lies in that interval. The window is the largest n before the first that fails (the
-// order of the original); one pass, since intervals only shrink. Both ends carry up to `error`, so the slope
-// is good to 2 error / t_n.
+// Readings x_j, taken t_j before the newest, carry an error of at most d each. The end-to-end line over n
+// steps, slope v = (x_0 - x_n) / t_n, deviates from x_j by e_0 (1 - s) + e_n s - e_j with s = t_j / t_n when
+// the true motion is straight: at most 2 d. So age n explains the samples between when |x_0 - v t_j - x_j| <=
+// 2 d for all of them, that is when v lies in all intervals
+//   (x_0 - x_j - 2 d) / t_j <= v <= (x_0 - x_j + 2 d) / t_j,  0 < j < n.
+// The window is the largest n before the first that fails (the order of the original). Intervals only shrink,
+// so one pass does. The slope is good to 2 d / t_n in straight motion, and lags half a window behind in
+// curved motion.
 
 #include <haptics/core/safety/velocity_estimator.hpp>
 
@@ -42,7 +43,7 @@ Twist VelocityEstimator::update(const Pose& pose, double dt) {
     for (int axis = 0; axis < 3; ++axis) {
         const double x = pose[axis];
         // a hair of slack: samples exactly on the bound are explained
-        const double error = error_[axis] * (1.0 + 1.0e-9);
+        const double error = 2.0 * error_[axis] * (1.0 + 1.0e-9);
         double low = -std::numeric_limits<double>::infinity();
         double high = std::numeric_limits<double>::infinity();
         double slope = 0.0;
