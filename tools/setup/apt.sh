@@ -27,19 +27,20 @@ apt_require() {
 apt_unpack() {
     local partial=$1 suite=$2
     shift 2
-    local apt=$partial/.apt status=/var/lib/dpkg/status mirror
+    local apt=$partial/.apt mirror
     mkdir -p "$apt/lists/partial" "$apt/archives/partial"
     if [[ $suite == own ]]; then
         apt_sources | awk '{ signed = $4 ~ /^\// ? " signed-by=" $4 : ""
             print "deb [target=Packages" signed "] " $1 " " $2 " " $3 }' >"$apt/sources.list"
         [[ -s $apt/sources.list ]] || die "apt on this machine names no package source; add one to /etc/apt/sources.list.d"
+        # a copy: apt locks the folder of the one it reads
+        cp /var/lib/dpkg/status "$apt/status"
     else
         mirror=$(apt_debian_mirror) && [[ -n $mirror ]] || return 1
         local keys=/usr/share/keyrings/debian-archive-keyring.gpg signed=
         [[ ! -f $keys ]] || signed=" signed-by=$keys"
         printf 'deb [target=Packages%s] %s %s main\n' "$signed" "$mirror" "$suite" >"$apt/sources.list"
-        status=$apt/status
-        : >"$status"
+        : >"$apt/status"
     fi
     mkdir "$apt/none"
     # read last, so it wins over the machine's own files; hooks of the machine would write outside
@@ -52,7 +53,7 @@ Dir::Etc::preferences "$apt/no-preferences";
 Dir::Etc::preferencesparts "$apt/none";
 Dir::State "$apt";
 Dir::State::lists "$apt/lists";
-Dir::State::status "$status";
+Dir::State::status "$apt/status";
 Dir::Cache "$apt";
 Dir::Cache::archives "$apt/archives";
 Dir::Log "$apt";
