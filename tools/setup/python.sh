@@ -20,7 +20,7 @@ build_python() {
     if ! python3 -m pip --version >/dev/null 2>&1; then
         local wheel
         install_packages_here "$1/.pip" python3-pip-whl
-        wheel=$(find "$1/.pip" /usr/share/python-wheels -name 'pip-*.whl' 2>/dev/null | sort | tail -n 1)
+        wheel=$({ find "$1/.pip" /usr/share/python-wheels -name 'pip-*.whl' 2>/dev/null || true; } | sort | tail -n 1)
         [[ -n $wheel ]] || die "python3 has no pip and none could be fetched; install pip"
         pip=(python3 "$wheel/pip")
     fi
