@@ -12,11 +12,10 @@ LockstepClock::LockstepClock(double rate_hz) noexcept
 
 int LockstepClock::begin_tick(double duration_s) noexcept {
     const double duration = duration_s > 0.0 ? std::min(duration_s, k_longest_tick_s) : 0.0;
-    // 1/60 s as a double is short of the real one by less than a nanosecond in a million years; the small
-    // addition makes sixty of them reach the full second instead of ending one bit before it
-    constexpr double k_rounding_ns = 1e-6;
+    // to the nearest: sixty times the double next to 1/60 s is a hair less or more than one second, and has
+    // to be one
     const double exact = duration * 1e9 + fraction_ns_;
-    const double whole = std::floor(exact + k_rounding_ns);
+    const double whole = std::nearbyint(exact);
     fraction_ns_ = exact - whole;
     scene_ns_ += static_cast<std::int64_t>(whole);
     return static_cast<int>(scene_ns_ / period_ns_ - steps_);

@@ -18,7 +18,8 @@ namespace haptics {
 
 namespace {
 
-constexpr std::size_t k_stack_bytes = std::size_t{1} << 20;
+// room for steps, and for the near megabyte that a sanitizer keeps there; only what is touched takes memory
+constexpr std::size_t k_stack_bytes = std::size_t{1} << 22;
 constexpr std::size_t k_touched_bytes = std::size_t{1} << 18;
 constexpr std::size_t k_page_bytes = 4096;
 

@@ -27,7 +27,8 @@ class LockstepClock {
     /// The time of the next step. Its clock_ns is its time_ns.
     [[nodiscard]] StepTime next() noexcept;
 
-    /// Time of the scene (ns): the sum of all ticks, rounded down. The clock that snapshots are stamped with.
+    /// Time of the scene (ns): the sum of all ticks, rounded to nearest. The clock that snapshots are stamped
+    /// with.
     [[nodiscard]] std::int64_t scene_ns() const noexcept { return scene_ns_; }
     /// The same in seconds.
     [[nodiscard]] double time() const noexcept { return static_cast<double>(scene_ns_) * 1e-9; }
