@@ -36,6 +36,10 @@ function(haptics_package component package target)
     endif()
     message(STATUS "${package} ${${package}_VERSION} in ${${package}_DIR}")
     add_library(haptics_${component} INTERFACE)
+    if(prefix)
+        # some packages count on /usr/include being searched
+        target_include_directories(haptics_${component} SYSTEM INTERFACE "${prefix}/usr/include")
+    endif()
     target_link_libraries(haptics_${component} INTERFACE ${target})
 endfunction()
 
