@@ -56,12 +56,14 @@ Mat3 inverse_or_zero(const Mat3& m) {
 PantographKinematics::PantographKinematics(const PantographGeometry& geometry)
     : geometry_(geometry)
     , base_{Vec2::Zero(), Vec2::Zero(), Vec2::Zero(), Vec2::Zero()}
+    , front_{Vec2::Zero(), Vec2::Zero()}
     , length_(1.0) {
     for (std::size_t b = 0; b < 2; ++b) {
         const FiveBarGeometry& bar = geometry_.bar[b];
         const Vec2 half = rotate(bar.base_angle, Vec2(0.5 * bar.base_spacing, 0.0));
         base_[2 * b] = bar.base_center - half;
         base_[2 * b + 1] = bar.base_center + half;
+        front_[b] = rotate(bar.base_angle, Vec2(0.0, 1.0));
     }
     if (geometry_.bar_count == 2)
         length_ = std::max(1.0e-4, 0.5 * (geometry_.attachment[1] - geometry_.attachment[0]).norm());
@@ -79,6 +81,10 @@ PantographState PantographKinematics::locate(const Pose& pose) const {
         const FiveBarGeometry& bar = geometry_.bar[b];
         const Vec2 arm = handle.turn(geometry_.attachment[b]);
         const Vec2 end = handle.origin + arm;
+        // behind the motors the arms are crossed or would run into the base
+        const double front = front_[b].dot(end - bar.base_center);
+        state.reach_margin = std::min(state.reach_margin, front);
+        state.reachable = state.reachable && front > 0.0;
         for (std::size_t k = 0; k < 2; ++k) {
             const std::size_t i = 2 * b + k;
             const double l = bar.proximal_length[k];

@@ -26,7 +26,7 @@ constexpr double k_forget_time = 1.0;
 constexpr double k_warp = 0.1;
 constexpr double k_adapt_time = 0.3;
 constexpr double k_margin = 1.1;
-constexpr double k_least_constant = 0.014;
+constexpr double k_least_constant = 0.016;
 constexpr double k_largest_constant = 0.03;
 constexpr double k_constant_per_delay = 0.9;
 
@@ -102,7 +102,9 @@ void TargetFollower::advance(double now) {
     wanted_delay_ = std::max(k_least_delay, wanted_delay_ * (1.0 - std::min(1.0, step / k_forget_time)));
     const double rate = (k_margin * wanted_delay_ - delay_) / k_adapt_time;
     delay_ += std::clamp(rate, -k_warp, k_warp) * step;
-    time_constant_ = constant_for(delay_);
+    // nothing to play: stand still, and go on from there when frames come again
+    delay_ = std::max(delay_, std::min(now_ - at(0).time_s, k_largest_delay));
+    time_constant_ += (constant_for(delay_) - time_constant_) * std::min(1.0, step / k_adapt_time);
 
     const double blend = 1.0 - std::exp(-step / time_constant_);
     const Pose input = interpolate(now_ - delay_);

@@ -33,9 +33,11 @@ struct PantographState {
     std::array<LegState, k_max_motors> leg{};
     /// Joint rates = rates * twist; wrench = rates^T * joint torques.
     JointJacobian rates{JointJacobian::Zero()};
-    /// True when every leg reaches its end point and both five-bars are in their assembly mode.
+    /// True when every leg reaches its end point, in front of its motors, and both five-bars are in their
+    /// assembly mode.
     bool reachable{false};
-    /// Least distance of an end point to the edge of its annulus of reach, m; negative outside.
+    /// Least distance of an end point to the edge of its annulus of reach or to the line of its motors, m;
+    /// negative outside.
     double reach_margin{0.0};
 };
 
@@ -102,6 +104,7 @@ class PantographKinematics {
   private:
     PantographGeometry geometry_;
     std::array<Vec2, k_max_motors> base_;
+    std::array<Vec2, 2> front_;
     double length_;
 };
 
