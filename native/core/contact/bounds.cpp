@@ -1,5 +1,5 @@
-/// A rounded polygon lies inside its core's box grown by its radius, and inside the disc about that box's center through the
-/// farthest core vertex, grown likewise.
+/// A rounded polygon lies inside its core's box grown by its radius, and inside the disc about that box's
+/// center through the farthest core vertex, grown likewise.
 
 #include <haptics/core/contact/bounds.hpp>
 
@@ -29,7 +29,8 @@ PieceBounds bounds_of(const Convex& convex) {
     bounds.center = 0.5 * (bounds.low + bounds.high);
     double squared = 0.0;
     for (int i = 0; i < convex.count; ++i)
-        squared = std::max(squared, (convex.vertex[static_cast<std::size_t>(i)] - bounds.center).squaredNorm());
+        squared =
+            std::max(squared, (convex.vertex[static_cast<std::size_t>(i)] - bounds.center).squaredNorm());
     bounds.radius = std::sqrt(squared) + convex.radius;
     bounds.low.array() -= convex.radius;
     bounds.high.array() += convex.radius;

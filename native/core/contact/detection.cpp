@@ -1,16 +1,17 @@
-/// Broad phase. In a step h a point of body a at distance up to R_a from its reference point comes nearer to b by at most
+/// Broad phase. In a step h a point of body a at distance up to R_a from its reference point comes nearer to
+/// b by at most
 ///     reach = h (|v_a - v_b| + |w_a| R_a + |w_b| R_b),
-/// so only pairs whose discs, and pieces whose box and disc, are within margin + reach can touch. A body that was pressed deep
-/// into matter is looked for that much farther: it still feels the face it came through.
+/// so only pairs whose discs, and pieces whose box and disc, are within margin + reach can touch. A body that
+/// was pressed deep into matter is looked for that much farther: it still feels the face it came through.
 
 #include <haptics/core/contact/detection.hpp>
+
+#include <algorithm>
+#include <tuple>
 
 #include "pair_contact.hpp"
 #include "patch_merge.hpp"
 #include "patch_tracking.hpp"
-
-#include <algorithm>
-#include <tuple>
 
 namespace haptics {
 namespace {
@@ -63,8 +64,8 @@ void write_side(const Actor& a, const Actor& b, const PairContact& contact, Patc
     side.offset = side.scene_offset - contact.normal.dot(owner.pose.head<2>());
 }
 
-void collide_pieces(const Search& search, const Actor& a, const Piece& piece_a, const PlacedConvex& placed_a, const Actor& b,
-                    const Piece& piece_b, const Transform& at_b, double reach) {
+void collide_pieces(const Search& search, const Actor& a, const Piece& piece_a, const PlacedConvex& placed_a,
+                    const Actor& b, const Piece& piece_b, const Transform& at_b, double reach) {
     Draft draft;
     PatchSide& side = draft.patch.side;
     side.id_a = a.body->id;
@@ -138,14 +139,21 @@ void collide_bodies(const Search& search, const Actor& a, const Actor& b) {
     }
 }
 
-Actor actor(const BodySet& set, const BodyBounds& bounds, std::int32_t i, std::int32_t first_index, bool tool) {
+Actor actor(const BodySet& set, const BodyBounds& bounds, std::int32_t i, std::int32_t first_index,
+            bool tool) {
     const Body& body = set.body[static_cast<std::size_t>(i)];
     const auto first = static_cast<std::size_t>(std::clamp(body.first_piece, 0, k_max_pieces - 1));
-    return {&body, &set.piece[first], &bounds.piece[first], bounds.radius[static_cast<std::size_t>(i)], first_index + i, tool};
+    return {&body,
+            &set.piece[first],
+            &bounds.piece[first],
+            bounds.radius[static_cast<std::size_t>(i)],
+            first_index + i,
+            tool};
 }
 
 /// Movable neighbors against the others; of two movable ones the smaller id is a.
-void collide_neighbors(const Search& search, const BodySet& neighbors, const BodyBounds& bounds, std::int32_t first_index) {
+void collide_neighbors(const Search& search, const BodySet& neighbors, const BodyBounds& bounds,
+                       std::int32_t first_index) {
     for (std::int32_t i = 0; i < neighbors.body_count; ++i) {
         if (neighbors.body[static_cast<std::size_t>(i)].kind != BodyKind::movable)
             continue;
@@ -178,8 +186,8 @@ void sort(DraftList& drafts) {
 } // namespace
 
 void detect_patches(const BodySet& tool, const BodyBounds& tool_bounds, const BodySet& neighbors,
-                    const BodyBounds& neighbor_bounds, const DetectionSettings& settings, const PatchList& previous,
-                    PatchList& patches) {
+                    const BodyBounds& neighbor_bounds, const DetectionSettings& settings,
+                    const PatchList& previous, PatchList& patches) {
     Memory memory;
     recall(tool, neighbors, previous, memory);
     DraftList drafts;
@@ -207,8 +215,8 @@ void detect_patches(const BodySet& tool, const BodyBounds& tool_bounds, const Bo
     }
 }
 
-void detect_patches(const BodySet& tool, const BodySet& neighbors, const DetectionSettings& settings, const PatchList& previous,
-                    PatchList& patches) {
+void detect_patches(const BodySet& tool, const BodySet& neighbors, const DetectionSettings& settings,
+                    const PatchList& previous, PatchList& patches) {
     BodyBounds tool_bounds;
     BodyBounds neighbor_bounds;
     compute_bounds(tool, tool_bounds);

@@ -1,8 +1,9 @@
-/// Let a face lie on n . x = c with tangent t, from u = lo to u = hi along t. A convex piece Q shows it its deepest vertex (the
-/// smallest n . q) and, from there, the edge that turns away least: between those two ends the lower boundary of Q is straight.
-/// Cutting that edge at lo and hi gives the two ends of the zone of contact; the gap is linear in between, so that no point of
-/// the zone is deeper than both ends. Both the face and the edge are taken with their whole flat face, whatever the number of
-/// pieces that it was cut into, and so the ends do not depend on the cuts.
+/// Let a face lie on n . x = c with tangent t, from u = lo to u = hi along t. A convex piece Q shows it its
+/// deepest vertex (the smallest n . q) and, from there, the edge that turns away least: between those two
+/// ends the lower boundary of Q is straight. Cutting that edge at lo and hi gives the two ends of the zone of
+/// contact; the gap is linear in between, so that no point of the zone is deeper than both ends. Both the
+/// face and the edge are taken with their whole flat face, whatever the number of pieces that it was cut
+/// into, and so the ends do not depend on the cuts.
 
 #include "face_contact.hpp"
 
@@ -46,7 +47,8 @@ FaceSeparation widest_separation(const PlacedConvex& owner, const PlacedConvex& 
     return widest;
 }
 
-bool face_points(const PlacedConvex& owner, const FaceSeparation& face, const PlacedConvex& other, FacePoints& points) {
+bool face_points(const PlacedConvex& owner, const FaceSeparation& face, const PlacedConvex& other,
+                 FacePoints& points) {
     const Vec2& n = owner.n(face.face);
     const Vec2& origin = owner.v(face.face);
     const Vec2 t = perpendicular(n);

@@ -1,9 +1,9 @@
 #pragma once
 /// Contact of a flat face with whatever of another piece is in front of (or behind) it.
 
-#include "placed_convex.hpp"
-
 #include <haptics/core/contact/contact.hpp>
+
+#include "placed_convex.hpp"
 
 namespace haptics::contact {
 
@@ -34,11 +34,13 @@ struct FacePoints {
     int edge{-1};
 };
 
-/// Clips the part of `other` that faces the given face to the extent of the face (including the parts of the same flat face in
-/// other pieces). False when nothing of it is in front of or behind the face's extent.
-bool face_points(const PlacedConvex& owner, const FaceSeparation& face, const PlacedConvex& other, FacePoints& points);
+/// Clips the part of `other` that faces the given face to the extent of the face (including the parts of the
+/// same flat face in other pieces). False when nothing of it is in front of or behind the face's extent.
+bool face_points(const PlacedConvex& owner, const FaceSeparation& face, const PlacedConvex& other,
+                 FacePoints& points);
 
-/// Whether the solid that `piece` is part of can show a normal `direction` (scene axes, outward) at vertex `i`; false on seams.
+/// Whether the solid that `piece` is part of can show a normal `direction` (scene axes, outward) at vertex
+/// `i`; false on seams.
 [[nodiscard]] bool shows_normal(const PlacedConvex& piece, int i, const Vec2& direction);
 
 } // namespace haptics::contact

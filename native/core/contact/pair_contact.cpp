@@ -1,19 +1,21 @@
-/// Cores apart: their distance d is realised either at a face (then it equals the largest distance of one core along a face
-/// normal of the other, and the foot lies on that face) or between two vertices. All face normals of both are tried, which gives
-/// the face case at once; otherwise the nearest pair of vertices is the answer. Radii only shift the gap, and the direction
-/// between two vertices turns continuously: a rounded corner.
+/// Cores apart: their distance d is realised either at a face (then it equals the largest distance of one
+/// core along a face normal of the other, and the foot lies on that face) or between two vertices. All face
+/// normals of both are tried, which gives the face case at once; otherwise the nearest pair of vertices is
+/// the answer. Radii only shift the gap, and the direction between two vertices turns continuously: a rounded
+/// corner.
 ///
-/// Cores overlapping: the direction can only come from a face. Which one is a matter of history, not of depth: a tool deep in a
-/// thin wall is nearer to the far side. So the face of the last step stays as long as the other piece is behind it and in front
-/// of its extent; it is handed over only to faces within k_handover of its normal that are less deep, and among the faces of
-/// the same owner only once the deepest vertex has passed the end of the face. Without a history the least deep face is taken.
+/// Cores overlapping: the direction can only come from a face. Which one is a matter of history, not of
+/// depth: a tool deep in a thin wall is nearer to the far side. So the face of the last step stays as long as
+/// the other piece is behind it and in front of its extent; it is handed over only to faces within k_handover
+/// of its normal that are less deep, and among the faces of the same owner only once the deepest vertex has
+/// passed the end of the face. Without a history the least deep face is taken.
 
 #include "pair_contact.hpp"
 
-#include "face_contact.hpp"
-
 #include <algorithm>
 #include <limits>
+
+#include "face_contact.hpp"
 
 namespace haptics::contact {
 namespace {
@@ -39,7 +41,9 @@ struct Pair {
     [[nodiscard]] const PlacedConvex& owner(Face face) const { return face == Face::of_a ? a : b; }
     [[nodiscard]] const PlacedConvex& other(Face face) const { return face == Face::of_a ? b : a; }
     /// Normal of the patch (out of b into a) for a face.
-    [[nodiscard]] Vec2 normal(Face face, int edge) const { return face == Face::of_a ? Vec2{-a.n(edge)} : b.n(edge); }
+    [[nodiscard]] Vec2 normal(Face face, int edge) const {
+        return face == Face::of_a ? Vec2{-a.n(edge)} : b.n(edge);
+    }
     [[nodiscard]] bool allowed(const Vec2& n) const {
         return !query.one_way || n.dot(query.one_way_normal) > k_one_way;
     }
@@ -51,10 +55,13 @@ struct Pair {
     }
 };
 
-int vertex_feature(int vertex) { return k_max_vertices + vertex; }
+int vertex_feature(int vertex) {
+    return k_max_vertices + vertex;
+}
 
 /// Fills in a contact along a face.
-bool fill_face(const Pair& pair, Face face, const FaceSeparation& s, const FacePoints& points, PairContact& contact) {
+bool fill_face(const Pair& pair, Face face, const FaceSeparation& s, const FacePoints& points,
+               PairContact& contact) {
     const bool of_a = face == Face::of_a;
     const PlacedConvex& other = pair.other(face);
     contact.face = face;
@@ -104,7 +111,8 @@ bool vertex_contact(const Pair& pair, PairContact& contact) {
     double distance = n.norm();
     // a disc that was pushed past the center of another keeps its side
     const bool discs = pair.a.count == 1 && pair.b.count == 1;
-    if (discs && pair.query.hint.known && (distance < k_no_direction || n.dot(pair.query.hint.normal) < 0.0)) {
+    if (discs && pair.query.hint.known &&
+        (distance < k_no_direction || n.dot(pair.query.hint.normal) < 0.0)) {
         distance = n.dot(pair.query.hint.normal);
         n = pair.query.hint.normal;
     } else if (distance < k_no_direction) {
@@ -162,7 +170,8 @@ bool least_deep(const Pair& pair, const Vec2* cone, Face& face, FaceSeparation& 
     return found;
 }
 
-/// The face of the last step, or the one it is handed over to. False when the other piece is no longer behind it.
+/// The face of the last step, or the one it is handed over to. False when the other piece is no longer behind
+/// it.
 bool kept_face(const Pair& pair, Face& face, FaceSeparation& best, FacePoints& points) {
     const SideHint& hint = pair.query.hint;
     const PlacedConvex& owner = pair.owner(hint.face);
@@ -185,7 +194,8 @@ bool kept_face(const Pair& pair, Face& face, FaceSeparation& best, FacePoints& p
         const PlacedConvex& candidate_owner = pair.owner(side);
         for (int edge = 0; edge < candidate_owner.faces(); ++edge) {
             if (side == hint.face) {
-                const bool reached = (past_start && edge == owner.before(own_face)) || (past_end && edge == owner.next(own_face));
+                const bool reached = (past_start && edge == owner.before(own_face)) ||
+                                     (past_end && edge == owner.next(own_face));
                 if (!reached)
                     continue;
             }
@@ -205,7 +215,8 @@ bool kept_face(const Pair& pair, Face& face, FaceSeparation& best, FacePoints& p
 }
 
 /// Cores apart.
-bool collide_apart(const Pair& pair, const FaceSeparation& on_b, const FaceSeparation& on_a, PairContact& contact) {
+bool collide_apart(const Pair& pair, const FaceSeparation& on_b, const FaceSeparation& on_a,
+                   PairContact& contact) {
     FacePoints points;
     const bool b_first = on_b.separation >= on_a.separation - k_tie;
     bool on_face = false;
@@ -226,14 +237,16 @@ bool collide_apart(const Pair& pair, const FaceSeparation& on_b, const FaceSepar
     // the nearest features are seams, or give no direction: a flat face that the other piece is in front of
     Face face = Face::of_b;
     FaceSeparation best;
-    if (!least_deep(pair, nullptr, face, best, points) || (pair.query.one_way && best.separation < 0.0))
+    if (!least_deep(pair, nullptr, face, best, points) || best.separation < 0.0 ||
+        !closest_face(pair, face, best, points))
         return false;
-    contact.rank = best.separation >= 0.0 ? Rank::followed : Rank::inside;
+    contact.rank = Rank::followed;
     return fill_face(pair, face, best, points, contact);
 }
 
 /// Cores overlapping.
-bool collide_overlapping(const Pair& pair, const FaceSeparation& on_b, const FaceSeparation& on_a, PairContact& contact) {
+bool collide_overlapping(const Pair& pair, const FaceSeparation& on_b, const FaceSeparation& on_a,
+                         PairContact& contact) {
     const SideHint& hint = pair.query.hint;
     Face face = Face::of_b;
     FaceSeparation best;
@@ -260,8 +273,9 @@ bool collide(const PlacedConvex& a, const PlacedConvex& b, const PairQuery& quer
         found = fill_face(pair, face, kept, points, contact);
     } else {
         const FaceSeparation on_b = widest_separation(b, a);
-        const FaceSeparation on_a = b.half_plane ? FaceSeparation{-1, 0, -std::numeric_limits<double>::infinity()}
-                                                 : widest_separation(a, b);
+        const FaceSeparation on_a = b.half_plane
+                                        ? FaceSeparation{-1, 0, -std::numeric_limits<double>::infinity()}
+                                        : widest_separation(a, b);
         const double widest = std::max(on_b.separation, on_a.separation);
         if (widest - a.radius - b.radius > query.limit)
             return false;

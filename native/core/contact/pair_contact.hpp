@@ -1,11 +1,12 @@
 #pragma once
-/// Contact of one piece with one piece: the normal, the one or two ends of the zone of contact, the side it is felt from.
-
-#include "placed_convex.hpp"
+/// Contact of one piece with one piece: the normal, the one or two ends of the zone of contact, the side it
+/// is felt from.
 
 #include <haptics/core/contact/contact.hpp>
 
 #include <cstdint>
+
+#include "placed_convex.hpp"
 
 namespace haptics::contact {
 

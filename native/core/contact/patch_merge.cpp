@@ -1,11 +1,14 @@
-/// Contacts belong to one patch when they are of the same body a, lie on one plane of b's matter (all fixed matter with one
-/// surface is one solid) and push in nearly the same direction. Of the points of a patch the two ends along the tangent stay:
-/// with a linear gap in between they give the same force and torque as all of them.
+/// Contacts belong to one patch when they are of the same body a, lie on one plane of b's matter (all fixed
+/// matter with one surface is one solid) and push in nearly the same direction. Of the points of a patch the
+/// two ends along the tangent stay: with a linear gap in between they give the same force and torque as all
+/// of them.
 ///
-/// Shares. Level ends have a half each. When one end is higher, its share w falls with the rise r = (g_up - g_low) / tilt as
+/// Shares. Level ends have a half each. When one end is higher, its share w falls with the rise r = (g_up -
+/// g_low) / tilt as
 ///     w = 1/2 (1 - 3 r^2 + 2 r^3),
-/// and is gone at r = 1: a box that is tilted onto its corner feels the full stiffness of the wall there, and nothing jumps on the
-/// way. (A share that follows the depths instead would be stiffer to turning than the wall, and chatter on hard walls.)
+/// and is gone at r = 1: a box that is tilted onto its corner feels the full stiffness of the wall there, and
+/// nothing jumps on the way. (A share that follows the depths instead would be stiffer to turning than the
+/// wall, and chatter on hard walls.)
 
 #include "patch_merge.hpp"
 
@@ -22,6 +25,8 @@ constexpr double k_same_plane_turn = 2e-3;
 constexpr double k_same_push = 0.995;
 /// A point that is deeper than both ends by more than this is the patch on its own, m.
 constexpr double k_proud = 1e-6;
+/// Points nearer than this are one, m.
+constexpr double k_one_point = 1e-8;
 /// Gaps that differ by less are equal, m.
 constexpr double k_tie = 1e-12;
 
@@ -33,7 +38,8 @@ bool same_surface(const Surface& p, const Surface& q) {
 bool one_patch(const Draft& p, const Draft& q) {
     const PatchSide& s = p.patch.side;
     const PatchSide& t = q.patch.side;
-    if (s.id_a != t.id_a || s.tool_a != t.tool_a || s.fixed_b != t.fixed_b || (!s.fixed_b && s.id_b != t.id_b))
+    if (s.id_a != t.id_a || s.tool_a != t.tool_a || s.fixed_b != t.fixed_b ||
+        (!s.fixed_b && s.id_b != t.id_b))
         return false;
     if (p.patch.normal.dot(q.patch.normal) < k_same_push || !same_surface(p.surface_b, q.surface_b))
         return false;
@@ -125,7 +131,8 @@ void share_out(Patch& patch, double tilt) {
         return;
     const std::size_t low = patch.point[0].gap <= patch.point[1].gap ? 0 : 1;
     const double rise = (patch.point[1 - low].gap - patch.point[low].gap) / tilt;
-    if (rise >= 1.0) {
+    const double length = (patch.point[1].position - patch.point[0].position).squaredNorm();
+    if (rise >= 1.0 || length < k_one_point * k_one_point) {
         patch.point[0] = patch.point[low];
         patch.point[0].weight = 1.0;
         patch.point_count = 1;

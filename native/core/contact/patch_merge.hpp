@@ -1,7 +1,6 @@
 #pragma once
-/// Gathers the contacts of all pairs of pieces into patches: one for all points of one body on one plane of the other's matter.
-
-#include "pair_contact.hpp"
+/// Gathers the contacts of all pairs of pieces into patches: one for all points of one body on one plane of
+/// the other's matter.
 
 #include <haptics/core/contact/contact.hpp>
 
@@ -10,6 +9,8 @@
 #include <cstddef>
 #include <new>
 #include <type_traits>
+
+#include "pair_contact.hpp"
 
 namespace haptics::contact {
 
@@ -43,7 +44,8 @@ struct DraftList {
     int count{0};
     int dropped{0};
 
-    /// Adds a contact, merging it into the patch on the same plane if there is one. When the list is full the shallowest goes.
+    /// Adds a contact, merging it into the patch on the same plane if there is one. When the list is full the
+    /// shallowest goes.
     void add(const Draft& added);
     /// Removes by moving the last one into its place.
     void remove(int index) {
@@ -52,10 +54,12 @@ struct DraftList {
             (*this)[index] = (*this)[count];
     }
     [[nodiscard]] Draft& operator[](int index) {
-        return *std::launder(reinterpret_cast<Draft*>(&room_[static_cast<std::size_t>(index) * sizeof(Draft)]));
+        return *std::launder(
+            reinterpret_cast<Draft*>(&room_[static_cast<std::size_t>(index) * sizeof(Draft)]));
     }
     [[nodiscard]] const Draft& operator[](int index) const {
-        return *std::launder(reinterpret_cast<const Draft*>(&room_[static_cast<std::size_t>(index) * sizeof(Draft)]));
+        return *std::launder(
+            reinterpret_cast<const Draft*>(&room_[static_cast<std::size_t>(index) * sizeof(Draft)]));
     }
 
   private:
@@ -63,7 +67,8 @@ struct DraftList {
 };
 static_assert(std::is_trivially_destructible_v<Draft>);
 
-/// Sets the shares of the points of a patch: 1, or a half each when level; the upper one's share fades out over `tilt` (m).
+/// Sets the shares of the points of a patch: 1, or a half each when level; the upper one's share fades out
+/// over `tilt` (m).
 void share_out(Patch& patch, double tilt);
 
 } // namespace haptics::contact

@@ -1,8 +1,8 @@
-/// A patch goes on when the same two bodies (all fixed bodies count as one) touch at nearly the same place in nearly the same
-/// direction; the same features settle it first. The mismatch of two patches is
+/// A patch goes on when the same two bodies (all fixed bodies count as one) touch at nearly the same place in
+/// nearly the same direction; the same features settle it first. The mismatch of two patches is
 ///     distance of their nearest points + k_turn_length * |n - n'|,
-/// pairs are taken from the smallest mismatch upward, and each patch is used once: a box that rolls from its face onto its corner,
-/// slides over a seam or turns around a rounded corner keeps its state.
+/// pairs are taken from the smallest mismatch upward, and each patch is used once: a box that rolls from its
+/// face onto its corner, slides over a seam or turns around a rounded corner keeps its state.
 
 #include "patch_tracking.hpp"
 
@@ -36,7 +36,8 @@ const Body* find(const BodySet& set, std::uint64_t id) {
 }
 
 bool same_pair(const PatchSide& p, const PatchSide& q) {
-    return p.id_a == q.id_a && p.tool_a == q.tool_a && p.fixed_b == q.fixed_b && (p.fixed_b || p.id_b == q.id_b);
+    return p.id_a == q.id_a && p.tool_a == q.tool_a && p.fixed_b == q.fixed_b &&
+           (p.fixed_b || p.id_b == q.id_b);
 }
 
 /// Edge of b on the given plane, -1 when there is none.
@@ -58,7 +59,8 @@ double distance(const Patch& p, const Patch& q) {
     for (int i = 0; i < p.point_count; ++i)
         for (int k = 0; k < q.point_count; ++k)
             nearest = std::min(nearest, (p.point[static_cast<std::size_t>(i)].position -
-                                         q.point[static_cast<std::size_t>(k)].position).norm());
+                                         q.point[static_cast<std::size_t>(k)].position)
+                                            .norm());
     return nearest;
 }
 
@@ -88,7 +90,8 @@ void recall(const BodySet& tool, const BodySet& neighbors, const PatchList& prev
         entry.normal = patch.normal;
         entry.offset = patch.side.scene_offset;
         const bool of_a = patch.side.face == Face::of_a;
-        const Body* owner = find(of_a && patch.side.tool_a ? tool : neighbors, of_a ? patch.side.id_a : patch.side.id_b);
+        const Body* owner =
+            find(of_a && patch.side.tool_a ? tool : neighbors, of_a ? patch.side.id_a : patch.side.id_b);
         if (owner != nullptr) {
             entry.normal = rotate(owner->pose.z(), patch.side.normal);
             entry.offset = entry.normal.dot(owner->pose.head<2>()) + patch.side.offset;
@@ -111,7 +114,8 @@ SideHint side_of(const Memory& memory, const PatchSide& pair, const PlacedConvex
             found.edge = edge_on_plane(b, old.normal, old.offset);
             if (found.edge >= 0)
                 found.face = Face::of_b;
-        } else if (side.face == Face::of_a && same_pieces && side.edge < a.faces() && !is_hidden(*a.shape, side.edge)) {
+        } else if (side.face == Face::of_a && same_pieces && side.edge < a.faces() &&
+                   !is_hidden(*a.shape, side.edge)) {
             found.face = Face::of_a;
             found.edge = side.edge;
         }

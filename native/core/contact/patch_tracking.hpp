@@ -1,12 +1,12 @@
 #pragma once
 /// Carries what the last step's patches knew over to this step's.
 
-#include "pair_contact.hpp"
-#include "patch_merge.hpp"
-
 #include <haptics/core/contact/body.hpp>
 
 #include <array>
+
+#include "pair_contact.hpp"
+#include "patch_merge.hpp"
 
 namespace haptics::contact {
 
@@ -29,13 +29,15 @@ struct Memory {
 void recall(const BodySet& tool, const BodySet& neighbors, const PatchList& previous, Memory& memory);
 
 /// The side from which a pair of pieces was felt.
-[[nodiscard]] SideHint side_of(const Memory& memory, const PatchSide& pair, const PlacedConvex& a, const PlacedConvex& b);
+[[nodiscard]] SideHint side_of(const Memory& memory, const PatchSide& pair, const PlacedConvex& a,
+                               const PlacedConvex& b);
 
 /// How deep the body was pressed into other matter in the last step, m, >= 0.
 [[nodiscard]] double last_depth(const Memory& memory, std::uint64_t id_a, bool tool_a);
 
-/// Finds for each draft the patch that it goes on from, copies the memory, and drops what cannot have come about: deep contacts
-/// out of nowhere on matter that is being touched already, and contacts from behind a one-way piece.
+/// Finds for each draft the patch that it goes on from, copies the memory, and drops what cannot have come
+/// about: deep contacts out of nowhere on matter that is being touched already, and contacts from behind a
+/// one-way piece.
 void carry_over(const Memory& memory, DraftList& drafts);
 
 } // namespace haptics::contact

@@ -1,9 +1,11 @@
 /// Rounded outlines.
 ///
-/// Edge i lies on the line n_i . x = c_i. Shrunk by r it lies on n_i . x = c_i - r_i, with r_i = r on felt edges and 0 on
-/// hidden ones. Corner i is where the lines i - 1 and i cross, so it moves by the d that solves
+/// Edge i lies on the line n_i . x = c_i. Shrunk by r it lies on n_i . x = c_i - r_i, with r_i = r on felt
+/// edges and 0 on hidden ones. Corner i is where the lines i - 1 and i cross, so it moves by the d that
+/// solves
 ///     n_{i-1} . d = -r_{i-1},   n_i . d = -r_i,
-/// which is linear in r, and so is every edge length: L_i(r) = L_i - r c_i. The largest rounding is min_i L_i / c_i.
+/// which is linear in r, and so is every edge length: L_i(r) = L_i - r c_i. The largest rounding is min_i L_i
+/// / c_i.
 
 #include <haptics/core/geometry/shapes.hpp>
 
@@ -31,7 +33,9 @@ void set_normals(Convex& convex) {
     }
 }
 
-bool hidden_bit(std::uint16_t mask, int i) { return ((mask >> i) & 1U) != 0U; }
+bool hidden_bit(std::uint16_t mask, int i) {
+    return ((mask >> i) & 1U) != 0U;
+}
 
 /// Moves every corner as its two edges move inward by `inset` where felt and by 0 where hidden.
 void shift_corners(const Convex& convex, double inset, std::array<Vec2, k_max_vertices>& corner) {
@@ -86,7 +90,9 @@ Convex make_capsule(const Vec2& from, const Vec2& to, double radius) {
     return convex;
 }
 
-Convex make_segment(const Vec2& from, const Vec2& to) { return make_capsule(from, to, 0.0); }
+Convex make_segment(const Vec2& from, const Vec2& to) {
+    return make_capsule(from, to, 0.0);
+}
 
 Convex make_half_plane(const Vec2& point, const Vec2& normal) {
     Convex convex;
@@ -99,8 +105,8 @@ Convex make_half_plane(const Vec2& point, const Vec2& normal) {
 
 Convex make_box(const Vec2& center, const Vec2& size, double rounding) {
     const Vec2 h = 0.5 * size;
-    const std::array<Vec2, 4> outline{Vec2{center - h}, Vec2{center.x() + h.x(), center.y() - h.y()}, Vec2{center + h},
-                                      Vec2{center.x() - h.x(), center.y() + h.y()}};
+    const std::array<Vec2, 4> outline{Vec2{center - h}, Vec2{center.x() + h.x(), center.y() - h.y()},
+                                      Vec2{center + h}, Vec2{center.x() - h.x(), center.y() + h.y()}};
     return make_convex(outline, rounding);
 }
 
@@ -146,11 +152,15 @@ Convex make_convex(std::span<const Vec2> outline, double rounding, std::uint16_t
 
     if (rounding > 0.0) {
         convex.radius = std::min(rounding, 0.98 * largest_inset(convex));
-        std::array<Vec2, k_max_vertices> core;
-        shift_corners(convex, convex.radius, core);
-        std::copy_n(core.begin(), convex.count, convex.vertex.begin());
+        shrink_core(convex);
     }
     return convex;
+}
+
+void shrink_core(Convex& convex) {
+    std::array<Vec2, k_max_vertices> core;
+    shift_corners(convex, convex.radius, core);
+    std::copy_n(core.begin(), convex.count, convex.vertex.begin());
 }
 
 int drawn_corners(const Convex& convex, std::array<Vec2, k_max_vertices>& corner) {

@@ -11,7 +11,8 @@
 namespace haptics::testing {
 
 /// Adds a body with the given pieces; piece ids count from 1.
-inline Body& add_body(BodySet& set, std::uint64_t id, BodyKind kind, const Pose& pose, std::initializer_list<Convex> pieces) {
+inline Body& add_body(BodySet& set, std::uint64_t id, BodyKind kind, const Pose& pose,
+                      std::initializer_list<Convex> pieces) {
     Body& body = set.body[static_cast<std::size_t>(set.body_count++)];
     body = Body{};
     body.id = id;
@@ -30,6 +31,8 @@ inline Body& add_body(BodySet& set, std::uint64_t id, BodyKind kind, const Pose&
 }
 
 /// An empty set on the heap (sets are large).
-inline std::unique_ptr<BodySet> make_set() { return std::make_unique<BodySet>(); }
+inline std::unique_ptr<BodySet> make_set() {
+    return std::make_unique<BodySet>();
+}
 
 } // namespace haptics::testing

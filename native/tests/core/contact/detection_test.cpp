@@ -1,8 +1,8 @@
-#include "contact_scenes.hpp"
-
 #include <haptics/core/contact/detection.hpp>
 
 #include <doctest/doctest.h>
+
+#include "contact_scenes.hpp"
 
 using namespace haptics;
 using namespace haptics::testing;
@@ -18,7 +18,9 @@ struct Scene {
     DetectionSettings settings;
     PatchList patches;
 
-    Scene(const Convex& tool_shape, const Pose& pose) { add_body(*tool, 0, BodyKind::tool, pose, {tool_shape}); }
+    Scene(const Convex& tool_shape, const Pose& pose) {
+        add_body(*tool, 0, BodyKind::tool, pose, {tool_shape});
+    }
     void detect() { detect_patches(*tool, *neighbors, settings, patches, patches); }
 };
 
@@ -56,7 +58,8 @@ TEST_CASE("a box on its corner has one point with the whole share") {
 
 TEST_CASE("a disc on a rounded box touches at its foot") {
     Scene scene(make_disc(Vec2{0, 0}, 0.01), Pose{0.02, 0.0105, 0});
-    add_body(*scene.neighbors, 7, BodyKind::fixed, Pose{0, -0.05, 0}, {make_box(Vec2{0, 0}, Vec2{0.3, 0.1}, 0.002)});
+    add_body(*scene.neighbors, 7, BodyKind::fixed, Pose{0, -0.05, 0},
+             {make_box(Vec2{0, 0}, Vec2{0.3, 0.1}, 0.002)});
     scene.detect();
     REQUIRE(scene.patches.count == 1);
     const Patch& patch = scene.patches.patch[0];
@@ -86,7 +89,8 @@ TEST_CASE("fixed bodies are not listed against each other, movable ones are") {
     Scene scene(make_disc(Vec2{0, 0}, 0.01), Pose{1, 1, 0});
     add_body(*scene.neighbors, 1, BodyKind::fixed, Pose{0, 0, 0}, {make_box(Vec2{0, 0}, Vec2{0.1, 0.1})});
     add_body(*scene.neighbors, 2, BodyKind::fixed, Pose{0.05, 0, 0}, {make_box(Vec2{0, 0}, Vec2{0.1, 0.1})});
-    add_body(*scene.neighbors, 3, BodyKind::movable, Pose{0, 0.0599, 0}, {make_box(Vec2{0, 0}, Vec2{0.02, 0.02})});
+    add_body(*scene.neighbors, 3, BodyKind::movable, Pose{0, 0.0599, 0},
+             {make_box(Vec2{0, 0}, Vec2{0.02, 0.02})});
     scene.detect();
     REQUIRE(scene.patches.count == 1);
     CHECK(scene.patches.patch[0].body_a == 3);
@@ -95,7 +99,8 @@ TEST_CASE("fixed bodies are not listed against each other, movable ones are") {
 
 TEST_CASE("a tool far out of a thin wall on the other side still feels the face it came through") {
     Scene scene(make_box(Vec2{0, 0}, Vec2{0.005, 0.005}), Pose{0.01, 0.0035, 0});
-    add_body(*scene.neighbors, 7, BodyKind::fixed, Pose{0, 0, 0}, {make_box(Vec2{0, -0.0005}, Vec2{0.1, 0.001})});
+    add_body(*scene.neighbors, 7, BodyKind::fixed, Pose{0, 0, 0},
+             {make_box(Vec2{0, -0.0005}, Vec2{0.1, 0.001})});
     scene.detect();
     for (int i = 0; i <= 160; ++i) {
         scene.tool->body[0].pose.y() = 0.0025 - 1e-4 * i;

@@ -1,6 +1,6 @@
 #pragma once
-/// Bounds of bodies and pieces that hold in every pose. They change only with the shapes, so whoever keeps a BodySet computes
-/// them once per snapshot and not at every haptic step.
+/// Bounds of bodies and pieces that hold in every pose. They change only with the shapes, so whoever keeps a
+/// BodySet computes them once per snapshot and not at every haptic step.
 
 #include <haptics/core/contact/body.hpp>
 
@@ -8,8 +8,8 @@
 
 namespace haptics {
 
-/// Bounds of one piece in the axes of its body (m); a half-plane is without bound. Written by compute_bounds; nothing is set
-/// before.
+/// Bounds of one piece in the axes of its body (m); a half-plane is without bound. Written by compute_bounds;
+/// nothing is set before.
 struct PieceBounds {
     /// Corners of the axis-parallel box around the piece.
     Vec2 low;

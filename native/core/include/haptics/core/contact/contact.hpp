@@ -1,6 +1,7 @@
 #pragma once
-/// A contact patch: all points where one body touches the matter of another along one plane. A patch, not a vertex, carries the
-/// stiffness, the contact state and the friction anchor, so that a wall feels the same however it is cut into shapes.
+/// A contact patch: all points where one body touches the matter of another along one plane. A patch, not a
+/// vertex, carries the stiffness, the contact state and the friction anchor, so that a wall feels the same
+/// however it is cut into shapes.
 
 #include <haptics/core/contact/surface.hpp>
 #include <haptics/core/types.hpp>
@@ -35,8 +36,9 @@ struct PatchMemory {
     double tangent_force{0.0};
 };
 
-/// The side from which a patch is felt. Detection writes it and reads it back one step later, so that a body that was pushed
-/// through a thin wall still feels the face that it came through. Ids, not indices: they survive a geometry update.
+/// The side from which a patch is felt. Detection writes it and reads it back one step later, so that a body
+/// that was pushed through a thin wall still feels the face that it came through. Ids, not indices: they
+/// survive a geometry update.
 struct PatchSide {
     /// Ids of the two bodies and of the two pieces that gave the deepest point.
     std::uint64_t id_a{0};
@@ -50,15 +52,16 @@ struct PatchSide {
     enum class Face : std::uint8_t { none, of_a, of_b } face{Face::none};
     /// Edge of that face on its piece.
     std::int32_t edge{0};
-    /// Normal (out of b into a) in the axes of the face's owner (b without a face), and the offset of the face's plane from
-    /// that body's reference point, m.
+    /// Normal (out of b into a) in the axes of the face's owner (b without a face), and the offset of the
+    /// face's plane from that body's reference point, m.
     Vec2 normal{0.0, 1.0};
     double offset{0.0};
     /// Offset of the same plane from the origin of the scene, m, in case the owner is gone from the snapshot.
     double scene_offset{0.0};
 };
 
-/// Bodies in a patch are indices into the step's body list: tool links first, then the neighbors of the snapshot.
+/// Bodies in a patch are indices into the step's body list: tool links first, then the neighbors of the
+/// snapshot.
 struct Patch {
     std::int32_t body_a{0};
     std::int32_t body_b{0};
