@@ -1,19 +1,20 @@
-/// The two methods that the default is compared with. Both take the closing contacts only (v_n < 0), want v+ = -e v- for
-/// each of them, and know no friction.
+/// The two methods that the default is compared with. Both take the closing contacts only (v_n < 0), want v+
+/// = -e v- for each of them, and know no friction.
 ///
-/// `paper`: eq. (5), q'+ = (J^T J)^-1 J^T v+. With fewer contacts than freedoms J^T J is singular; the inverse is read as
-/// the pseudo-inverse, J^+ v+, singular values below 1e-9 of the largest left out. The result has no part outside the row
-/// space of J: whatever the tool did there stops. It depends on the units of the freedoms, as J^T J has no metric.
+/// `paper`: eq. (5), q'+ = (J^T J)^-1 J^T v+. With fewer contacts than freedoms J^T J is singular; the
+/// inverse is read as the pseudo-inverse, J^+ v+, singular values below 1e-9 of the largest left out. The
+/// result has no part outside the row space of J: whatever the tool did there stops. It depends on the units
+/// of the freedoms, as J^T J has no metric.
 ///
-/// `mass_weighted`: the smallest change of motion in the D-norm that gives v+ (in the sense of least squares). With
-/// D^-1 = L L^T and A = J L it is L A^+ (v+ - v-), made by impulses p = (A A^T)^+ (v+ - v-) of either sign. With equal
-/// restitutions energy does not grow: L^-1 q' changes by -(1 + e) times its projection onto the row space of A. With
-/// unequal ones it may.
-
-#include "collision_solver.hpp"
+/// `mass_weighted`: the smallest change of motion in the D-norm that gives v+ (in the sense of least
+/// squares). With D^-1 = L L^T and A = J L it is L A^+ (v+ - v-), made by impulses p = (A A^T)^+ (v+ - v-) of
+/// either sign. With equal restitutions energy does not grow: L^-1 q' changes by -(1 + e) times its
+/// projection onto the row space of A. With unequal ones it may.
 
 #include <algorithm>
 #include <cmath>
+
+#include "collision_solver.hpp"
 
 namespace haptics::detail {
 namespace {
@@ -29,7 +30,9 @@ void factorize(const FreedomMatrix& inverse_mass, double* l) {
             double sum = inverse_mass(i, j);
             for (int k = 0; k < j; ++k)
                 sum -= l[i * n + k] * l[j * n + k];
-            l[i * n + j] = i == j ? std::sqrt(std::fmax(sum, 0.0)) : l[j * n + j] > 0.0 ? sum / l[j * n + j] : 0.0;
+            l[i * n + j] = i == j               ? std::sqrt(std::fmax(sum, 0.0))
+                           : l[j * n + j] > 0.0 ? sum / l[j * n + j]
+                                                : 0.0;
         }
     }
 }
@@ -115,8 +118,8 @@ void pseudo_solve(double* rows, int count, int width, double* vectors, const dou
     }
 }
 
-void resolve_for_comparison(CollisionMethod method, const CollisionProblem& problem, CollisionWorkspace& workspace,
-                            CollisionSolution& solution) noexcept {
+void resolve_for_comparison(CollisionMethod method, const CollisionProblem& problem,
+                            CollisionWorkspace& workspace, CollisionSolution& solution) noexcept {
     const int n = problem.freedoms();
     int closing[k_max_collision_contacts];
     double before[k_max_collision_contacts];
@@ -153,7 +156,8 @@ void resolve_for_comparison(CollisionMethod method, const CollisionProblem& prob
         for (int c = 0; c < count; ++c) {
             target[c] = 0.0;
             for (int k = 0; k < n; ++k)
-                target[c] += problem.normal_rows(closing[c], k) * (solution.velocity[k] - problem.velocity[k]);
+                target[c] +=
+                    problem.normal_rows(closing[c], k) * (solution.velocity[k] - problem.velocity[k]);
         }
     } else {
         for (int c = 0; c < count; ++c)

@@ -1,16 +1,17 @@
-/// Lemke's method (Cottle, Pang and Stone, "The Linear Complementarity Problem", algorithm 4.4.5): follow the path of
-/// solutions of w = M z + q + z0, w, z, z0 >= 0, w z = 0 from z0 large enough to z0 = 0. One pivot exchanges a basic and a
-/// nonbasic variable; the variable that enters next is the complement of the one that left.
-
-#include "collision_solver.hpp"
+/// Lemke's method (Cottle, Pang and Stone, "The Linear Complementarity Problem", algorithm 4.4.5): follow the
+/// path of solutions of w = M z + q + z0, w, z, z0 >= 0, w z = 0 from z0 large enough to z0 = 0. One pivot
+/// exchanges a basic and a nonbasic variable; the variable that enters next is the complement of the one that
+/// left.
 
 #include <cmath>
+
+#include "collision_solver.hpp"
 
 namespace haptics::detail {
 namespace {
 
-/// Rows are the basic variables, columns the nonbasic ones and, last, the constant. Variable i < n is w_i, n + i is z_i,
-/// 2 n is z0.
+/// Rows are the basic variables, columns the nonbasic ones and, last, the constant. Variable i < n is w_i, n
+/// + i is z_i, 2 n is z0.
 struct Tableau {
     double* value;
     int n;
@@ -43,7 +44,7 @@ struct Tableau {
 
 } // namespace
 
-bool solve_complementarity(double* values, int n, double* z, int& iterations) noexcept {
+bool solve_complementarity(double* values, int n, double* z, SolverReport& report) noexcept {
     Tableau tableau{values, n, {}, {}};
     const int constant = n + 1;
     int r = 0;
@@ -62,8 +63,9 @@ bool solve_complementarity(double* values, int n, double* z, int& iterations) no
     int entering = tableau.complement(tableau.basic[r]);
     tableau.pivot(r, n);
     const int bound = 4 * n + 16;
-    for (int iteration = 0; iteration < bound; ++iteration) {
-        ++iterations;
+    for (int iteration = 0; iteration < bound && report.pivot_work > 0; ++iteration) {
+        ++report.iterations;
+        report.pivot_work -= n * (n + 2);
         int c = 0;
         while (tableau.nonbasic[c] != entering)
             ++c;

@@ -2,23 +2,26 @@
 ///
 ///     minimize E(p) = p^T G p / 2 + p^T v   over p >= 0,   G = J D^-1 J^T, v = J q'
 ///
-/// is the dual of min |x - q'|_D over J x >= 0. Its optimality conditions are 0 <= p, 0 <= v + G p, p (v + G p) = 0, and
-/// E(p) is exactly the kinetic energy that the impulses p add. The active-set method of Lawson and Hanson (1974) walks from
-/// p = 0 through points p >= 0 with E strictly falling, so that it cannot cycle, ends at the optimum, and wherever it is
-/// stopped the impulses so far neither pull nor add energy.
+/// is the dual of min |x - q'|_D over J x >= 0. Its optimality conditions are 0 <= p, 0 <= v + G p, p (v + G
+/// p) = 0, and E(p) is exactly the kinetic energy that the impulses p add. The active-set method of Lawson
+/// and Hanson (1974) walks from p = 0 through points p >= 0 with E strictly falling, so that it cannot cycle,
+/// ends at the optimum, and wherever it is stopped the impulses so far neither pull nor add energy.
 ///
-/// A normal that depends on the active ones opens a direction of constant G p along which E falls linearly. Either an
-/// active impulse runs out along it (that contact leaves), or E has no lower bound: then no motion opens all these
-/// contacts at once, which walls at rest cannot cause (x = 0 would do). Such a contact is excluded.
-
-#include "collision_solver.hpp"
+/// A normal that depends on the active ones opens a direction of constant G p along which E falls linearly.
+/// Either an active impulse runs out along it (that contact leaves), or E has no lower bound: then no motion
+/// opens all these contacts at once, which walls at rest cannot cause (x = 0 would do). Such a contact is
+/// excluded.
 
 #include <cmath>
+
+#include "collision_solver.hpp"
 
 namespace haptics::detail {
 namespace {
 
 constexpr int k_stride = k_max_collision_contacts;
+/// A dependent contact that closes slower than this does so by rounding.
+constexpr double k_closes = 1e-9;
 
 /// The active contacts and the Cholesky factor of their part of G.
 struct ActiveSet {
@@ -86,7 +89,7 @@ bool project_two(const ImpulseSpace& space, const double* v, double* p) {
     const double b = space.row(0)[1];
     const double d = space.row(1)[1];
     const double det = a * d - b * b;
-    if (det <= k_dependent * a * d)
+    if (det <= (space.walls_move ? 0.1 : k_dependent) * a * d)
         return false;
     p[0] = 0.0;
     p[1] = 0.0;
@@ -107,141 +110,220 @@ bool project_two(const ImpulseSpace& space, const double* v, double* p) {
     return true;
 }
 
-} // namespace
-
-void project_normals(ImpulseSpace& space, const double* velocity, double* impulse, double* factor,
-                     SolverReport& report) noexcept {
-    const int m = space.contacts;
-    if (m == 2 && !space.excluded[0] && !space.excluded[1] && project_two(space, velocity, impulse)) {
-        ++report.iterations;
-        return;
+/// The walk from p = 0 to the optimum.
+class Walk {
+  public:
+    Walk(ImpulseSpace& space, const double* velocity, double* impulse, double* factor, SolverReport& report)
+        : space_(space)
+        , velocity_(velocity)
+        , impulse_(impulse)
+        , report_(report) {
+        active_.factor = factor;
+        for (int i = 0; i < space.contacts; ++i) {
+            impulse[i] = 0.0;
+            asleep_[i] = space.excluded[i];
+            is_active_[i] = false;
+            now_[i] = velocity[i];
+        }
     }
 
-    ActiveSet active;
-    active.factor = factor;
-    // asleep: met while dependent or by rounding only, not asked again
-    bool asleep[k_max_collision_contacts];
-    bool is_active[k_max_collision_contacts];
-    double v[k_max_collision_contacts];
-    for (int i = 0; i < m; ++i) {
-        impulse[i] = 0.0;
-        asleep[i] = space.excluded[i];
-        is_active[i] = false;
-        v[i] = velocity[i];
+    void run() {
+        const int bound = 6 * space_.contacts + 16;
+        for (int iteration = 0; iteration < bound; ++iteration) {
+            const int worst = fastest_closing();
+            if (worst < 0)
+                return;
+            ++report_.iterations;
+            if (space_.walls_move)
+                remember();
+            if (!admit(worst))
+                continue;
+            descend(worst);
+            if (space_.walls_move && is_runaway())
+                squeeze_out(worst);
+            update_velocities();
+        }
+        report_.fell_back = fastest_closing() >= 0;
     }
-    const auto leave = [&](int place) {
-        impulse[active.contact[place]] = 0.0;
-        is_active[active.contact[place]] = false;
-        active.remove(place);
-    };
 
-    const int bound = 6 * m + 16;
-    for (int iteration = 0;; ++iteration) {
-        // the fastest closing contact
+  private:
+    ImpulseSpace& space_;
+    const double* velocity_;
+    double* impulse_;
+    SolverReport& report_;
+    ActiveSet active_;
+    /// Closes by rounding only, or cannot be opened: not asked again.
+    bool asleep_[k_max_collision_contacts];
+    bool is_active_[k_max_collision_contacts];
+    /// Velocities after the impulses so far.
+    double now_[k_max_collision_contacts];
+    /// Where the walk stood before the last contact was admitted.
+    int remembered_count_{0};
+    int remembered_contact_[k_max_collision_contacts];
+    double remembered_impulse_[k_max_collision_contacts];
+
+    [[nodiscard]] int fastest_closing() const {
         int worst = -1;
-        double worst_velocity = -k_still;
-        for (int i = 0; i < m; ++i) {
-            if (!asleep[i] && !is_active[i] && v[i] < worst_velocity) {
-                worst_velocity = v[i];
+        double least = -k_still;
+        for (int i = 0; i < space_.contacts; ++i) {
+            if (!asleep_[i] && !is_active_[i] && now_[i] < least) {
+                least = now_[i];
                 worst = i;
             }
         }
-        if (worst < 0)
-            return;
-        if (iteration >= bound) {
-            report.fell_back = true;
-            return;
-        }
-        ++report.iterations;
+        return worst;
+    }
 
+    /// y = L^-1 G_active,contact; returns the part of the diagonal that is independent of the active
+    /// contacts.
+    double split(int contact, double* y) const {
+        const double* row = space_.row(contact);
+        for (int j = 0; j < active_.count; ++j)
+            y[j] = row[active_.contact[j]];
+        active_.solve_lower(y);
+        double rest = row[contact];
+        for (int j = 0; j < active_.count; ++j)
+            rest -= y[j] * y[j];
+        return rest;
+    }
+
+    void leave(int place) {
+        const int contact = active_.contact[place];
+        impulse_[contact] = 0.0;
+        is_active_[contact] = false;
+        active_.remove(place);
+    }
+
+    /// Makes a contact active; false when it cannot be or need not be.
+    bool admit(int contact) {
         double y[k_max_collision_contacts];
-        const double* row = space.row(worst);
-        const auto split = [&] {
-            for (int j = 0; j < active.count; ++j)
-                y[j] = row[active.contact[j]];
-            active.solve_lower(y);
-            double rest = row[worst];
-            for (int j = 0; j < active.count; ++j)
-                rest -= y[j] * y[j];
-            return rest;
-        };
-        double rest = split();
-        if (rest <= k_dependent * row[worst]) {
+        double rest = split(contact, y);
+        if (rest <= k_dependent * space_.row(contact)[contact]) {
+            asleep_[contact] = true;
+            if (now_[contact] > -k_closes)
+                return false;
             // slide along the direction of constant G p until an active impulse runs out
-            double c[k_max_collision_contacts];
-            for (int j = 0; j < active.count; ++j)
-                c[j] = y[j];
-            active.solve_upper(c);
+            active_.solve_upper(y);
             int blocking = -1;
             double reach = 0.0;
-            for (int j = 0; j < active.count; ++j) {
-                if (c[j] > 1e-9 && (blocking < 0 || impulse[active.contact[j]] < reach * c[j])) {
-                    reach = impulse[active.contact[j]] / c[j];
+            for (int j = 0; j < active_.count; ++j) {
+                const double p = impulse_[active_.contact[j]];
+                if (y[j] > 1e-9 && (blocking < 0 || p < reach * y[j])) {
+                    reach = p / y[j];
                     blocking = j;
                 }
             }
-            asleep[worst] = true;
-            if (worst_velocity > -1e-9)
-                continue;
             if (blocking < 0) {
-                space.excluded[worst] = true;
-                ++report.squeezed;
-                continue;
+                exclude(contact);
+                return false;
             }
-            for (int j = 0; j < active.count; ++j) {
-                double& p = impulse[active.contact[j]];
-                p = std::fmax(0.0, p - reach * c[j]);
+            for (int j = 0; j < active_.count; ++j) {
+                double& p = impulse_[active_.contact[j]];
+                p = std::fmax(0.0, p - reach * y[j]);
             }
-            impulse[worst] = reach;
             leave(blocking);
-            rest = split();
-            if (rest <= 0.0) {
-                impulse[worst] = 0.0;
-                continue;
-            }
-            asleep[worst] = false;
+            rest = split(contact, y);
+            if (rest <= 0.0)
+                return false;
+            impulse_[contact] = reach;
+            asleep_[contact] = false;
         }
-        active.append(worst, y, rest);
-        is_active[worst] = true;
+        active_.append(contact, y, rest);
+        is_active_[contact] = true;
+        return true;
+    }
 
-        // go to the lowest point of E over the active impulses, or as far as all of them stay >= 0
-        for (bool inside = false; !inside && active.count > 0;) {
+    /// Goes to the lowest point of E over the active impulses; those that would pull leave.
+    void descend(int admitted) {
+        while (active_.count > 0) {
             double target[k_max_collision_contacts];
-            for (int j = 0; j < active.count; ++j)
-                target[j] = -velocity[active.contact[j]];
-            active.solve_lower(target);
-            active.solve_upper(target);
+            for (int j = 0; j < active_.count; ++j)
+                target[j] = -velocity_[active_.contact[j]];
+            active_.solve_lower(target);
+            active_.solve_upper(target);
             double step = 1.0;
             int blocking = -1;
-            for (int j = 0; j < active.count; ++j) {
-                const double p = impulse[active.contact[j]];
+            for (int j = 0; j < active_.count; ++j) {
+                const double p = impulse_[active_.contact[j]];
                 if (target[j] < 0.0 && p < step * (p - target[j])) {
                     step = p / (p - target[j]);
                     blocking = j;
                 }
             }
-            for (int j = 0; j < active.count; ++j) {
-                double& p = impulse[active.contact[j]];
+            for (int j = 0; j < active_.count; ++j) {
+                double& p = impulse_[active_.contact[j]];
                 p = std::fmax(0.0, p + step * (target[j] - p));
             }
-            inside = blocking < 0;
-            if (!inside) {
-                ++report.iterations;
-                // what was just added can only leave by rounding
-                if (active.contact[blocking] == worst)
-                    asleep[worst] = true;
-                leave(blocking);
-            }
-        }
-        for (int i = 0; i < m; ++i)
-            v[i] = velocity[i];
-        for (int j = 0; j < active.count; ++j) {
-            const double p = impulse[active.contact[j]];
-            const double* column = space.row(active.contact[j]);
-            for (int i = 0; i < m; ++i)
-                v[i] += column[i] * p;
+            if (blocking < 0)
+                return;
+            ++report_.iterations;
+            // what was just admitted can only leave by rounding
+            if (active_.contact[blocking] == admitted)
+                asleep_[admitted] = true;
+            leave(blocking);
         }
     }
+
+    void update_velocities() {
+        for (int i = 0; i < space_.contacts; ++i)
+            now_[i] = velocity_[i];
+        for (int j = 0; j < active_.count; ++j) {
+            const double p = impulse_[active_.contact[j]];
+            const double* column = space_.row(active_.contact[j]);
+            for (int i = 0; i < space_.contacts; ++i)
+                now_[i] += column[i] * p;
+        }
+    }
+
+    void exclude(int contact) {
+        asleep_[contact] = true;
+        if (!space_.walls_move)
+            return;
+        space_.excluded[contact] = true;
+        ++report_.squeezed;
+    }
+
+    void remember() {
+        remembered_count_ = active_.count;
+        for (int j = 0; j < active_.count; ++j) {
+            remembered_contact_[j] = active_.contact[j];
+            remembered_impulse_[j] = impulse_[active_.contact[j]];
+        }
+    }
+
+    [[nodiscard]] bool is_runaway() const {
+        for (int j = 0; j < active_.count; ++j) {
+            if (impulse_[active_.contact[j]] > k_jammed)
+                return true;
+        }
+        return false;
+    }
+
+    /// Goes back to before a contact was admitted, and leaves it out for good.
+    void squeeze_out(int contact) {
+        while (active_.count > 0)
+            leave(active_.count - 1);
+        for (int j = 0; j < remembered_count_; ++j) {
+            double y[k_max_collision_contacts];
+            const int old = remembered_contact_[j];
+            active_.append(old, y, std::fmax(split(old, y), k_dependent));
+            is_active_[old] = true;
+            impulse_[old] = remembered_impulse_[j];
+        }
+        exclude(contact);
+    }
+};
+
+} // namespace
+
+void project_normals(ImpulseSpace& space, const double* velocity, double* impulse, double* factor,
+                     SolverReport& report) noexcept {
+    if (space.contacts == 2 && !space.excluded[0] && !space.excluded[1] &&
+        project_two(space, velocity, impulse)) {
+        ++report.iterations;
+        return;
+    }
+    Walk(space, velocity, impulse, factor, report).run();
 }
 
 } // namespace haptics::detail

@@ -101,18 +101,22 @@ inline CollisionTool random_chain(Dice& dice, int links, bool stretched) {
     return tool;
 }
 
+/// Walls at rest, all moving as one frame that the tool could follow, or each on its own (they may squeeze).
+enum class WallMotion : std::uint8_t { rest, together, apart };
+
 /// What may occur in a random problem.
 struct CollisionMix {
     int least_contacts{1};
     int most_contacts{8};
     bool friction{true};
-    bool moving_walls{false};
+    WallMotion walls{WallMotion::rest};
     /// Duplicate rows, opposed rows, zero rows, stretched chains.
     bool singular{true};
     /// All contacts of a problem have this restitution when >= 0.
     double restitution{-1.0};
-    /// 2 to this many links; 0 gives rigid tools only.
+    /// Links of the chains, at least 2; most_links 0 gives rigid tools only.
     int most_links{12};
+    int fewest_links{2};
     /// Chains only.
     bool no_rigid{false};
 };
@@ -120,6 +124,8 @@ struct CollisionMix {
 struct CollisionScene {
     CollisionTool tool;
     CollisionProblem problem;
+    /// Motion of the tool that keeps up with walls that move together.
+    FreedomVector frame;
 };
 
 /// Sets contact i to a point of the tool with a normal; the tangent is perpendicular(normal).
@@ -131,12 +137,12 @@ inline void place_contact(CollisionScene& scene, int i, int link, const Vec2& pl
     }
 }
 
-/// A random problem. Walls that move do so as bodies of their own, so that opposed walls may squeeze.
+/// A random problem.
 inline void random_scene(Dice& dice, const CollisionMix& mix, CollisionScene& scene) {
     const bool rigid = mix.most_links < 2 || (!mix.no_rigid && dice.chance(0.4));
-    scene.tool = rigid
-                     ? random_rigid_tool(dice)
-                     : random_chain(dice, dice.integer(2, mix.most_links), mix.singular && dice.chance(0.1));
+    scene.tool = rigid ? random_rigid_tool(dice)
+                       : random_chain(dice, dice.integer(mix.fewest_links, mix.most_links),
+                                      mix.singular && dice.chance(0.1));
     CollisionProblem& problem = scene.problem;
     const int n = scene.tool.freedoms();
     const int m = dice.integer(mix.least_contacts, mix.most_contacts);
@@ -153,7 +159,7 @@ inline void random_scene(Dice& dice, const CollisionMix& mix, CollisionScene& sc
                                  : dice.chance(0.15)    ? 1.0
                                                         : dice.uniform(0.0, 1.0);
         problem.friction[i] = mix.friction && dice.chance(0.7) ? dice.uniform(0.0, 1.5) : 0.0;
-        if (mix.moving_walls) {
+        if (mix.walls == WallMotion::apart) {
             problem.wall_normal_velocity[i] = dice.uniform(-0.3, 0.3);
             problem.wall_tangent_velocity[i] = dice.uniform(-0.3, 0.3);
         }
@@ -203,9 +209,18 @@ inline void random_scene(Dice& dice, const CollisionMix& mix, CollisionScene& sc
             // rest: take this contact's opening out of the motion
             const FreedomVector response = problem.inverse_mass * problem.normal_rows.row(i).transpose();
             const double yield = problem.normal_rows.row(i).dot(response);
-            if (yield > 0.0)
+            if (yield > 1e-8)
                 problem.velocity -= opening / yield * response;
         }
+    }
+    // the same collision, seen from a frame that moves
+    scene.frame.setZero(n);
+    if (mix.walls == WallMotion::together) {
+        for (int k = 0; k < n; ++k)
+            scene.frame[k] = dice.uniform(-size, size);
+        problem.velocity += scene.frame;
+        problem.wall_normal_velocity = problem.normal_rows * scene.frame;
+        problem.wall_tangent_velocity = problem.tangent_rows * scene.frame;
     }
 }
 

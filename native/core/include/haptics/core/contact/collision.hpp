@@ -1,6 +1,7 @@
 #pragma once
-/// Simultaneous collisions (section 3.2 of Constantinescu, Salcudean and Croft 2003, eqs 4 to 6): one set of impulses
-/// that resolves all closing contacts at once. The derivation is in native/core/contact/collision.cpp.
+/// Simultaneous collisions (section 3.2 of Constantinescu, Salcudean and Croft 2003, eqs 4 to 6): one set of
+/// impulses that resolves all closing contacts at once. The derivation is in
+/// native/core/contact/collision.cpp.
 ///
 ///     problem.resize(freedoms, contacts);
 ///     problem.inverse_mass = …;              // D^-1
@@ -17,13 +18,14 @@ namespace haptics {
 
 /// How colliding contacts are resolved.
 enum class CollisionMethod : std::uint8_t {
-    /// Default. Poisson's hypothesis in two phases (compression, restitution) with Coulomb friction: impulses never pull,
-    /// kinetic energy never grows, sliding survives.
+    /// Default. Poisson's hypothesis in two phases (compression, restitution) with Coulomb friction: impulses
+    /// never pull, kinetic energy never grows, sliding survives.
     poisson,
-    /// v+ = -e v- for every closing contact, as an equality in the metric of D (least squares of the smallest change of
-    /// motion). Without friction. Can pull; can add energy when restitutions differ.
+    /// v+ = -e v- for every closing contact, as an equality in the metric of D (least squares of the smallest
+    /// change of motion). Without friction. Can pull; can add energy when restitutions differ.
     mass_weighted,
-    /// Eq. (5) by pseudo-inverse. Without friction. Stops free motion, can add energy and pull. For comparison only.
+    /// Eq. (5) by pseudo-inverse. Without friction. Stops free motion, can add energy and pull. For
+    /// comparison only.
     paper,
 };
 
@@ -39,23 +41,25 @@ using ContactVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 
 /// One value per freedom, capacity fixed.
 using FreedomVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, k_max_collision_freedoms, 1>;
 /// One row of freedoms per contact, row by row in memory, capacity fixed.
-using ContactRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, k_max_collision_contacts,
-                                  k_max_collision_freedoms>;
+using ContactRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor,
+                                  k_max_collision_contacts, k_max_collision_freedoms>;
 /// Square matrix over the freedoms, row by row in memory, capacity fixed.
-using FreedomMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, k_max_collision_freedoms,
-                                    k_max_collision_freedoms>;
+using FreedomMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor,
+                                    k_max_collision_freedoms, k_max_collision_freedoms>;
 
-/// One collision problem in configuration space. About 230 kB: keep it with the stepping data, not on the stack.
+/// One collision problem in configuration space. About 230 kB: keep it with the stepping data, not on the
+/// stack.
 struct CollisionProblem {
-    /// D^-1, freedoms x freedoms, symmetric positive definite (block diagonal for an island of several bodies).
+    /// D^-1, freedoms x freedoms, symmetric positive definite (block diagonal for an island of several
+    /// bodies).
     FreedomMatrix inverse_mass;
     /// q' before the collision.
     FreedomVector velocity;
-    /// Normal rows J_n, contacts x freedoms: the gap opens at J_n q' - wall_normal_velocity, m/s. A row that is zero, or
-    /// below 1e-7 of the largest in the metric of D^-1, cannot be moved: it gets no impulse.
+    /// Normal rows J_n, contacts x freedoms: the gap opens at J_n q' - wall_normal_velocity, m/s. A contact
+    /// that cannot be moved gets no impulse: a row of zeros, one below 1e-7 of the largest in the metric of
+    /// D^-1, and, where walls move, one below 1e-3 of its own tangent (a nearly stretched arm pushed along).
     ContactRows normal_rows;
-    /// Tangent rows J_t, contacts x freedoms: the contact slips at J_t q' - wall_tangent_velocity, m/s. Read by `poisson`
-    /// only, and only where friction > 0.
+    /// Tangent rows J_t, contacts x freedoms: the contact slips at J_t q' - wall_tangent_velocity, m/s.
     ContactRows tangent_rows;
     /// Velocity of the environment's side along the normal, m/s, positive towards the tool.
     ContactVector wall_normal_velocity;
@@ -66,8 +70,8 @@ struct CollisionProblem {
     /// Coulomb coefficient, >= 0.
     ContactVector friction;
 
-    /// Sets the sizes without allocating; walls at rest, no restitution, no friction, all else to be filled in.
-    /// freedoms 1..k_max_collision_freedoms, contacts 0..k_max_collision_contacts (clamped).
+    /// Sets the sizes without allocating; walls at rest, no restitution, no friction, all else to be filled
+    /// in. freedoms 1..k_max_collision_freedoms, contacts 0..k_max_collision_contacts (clamped).
     void resize(int freedoms, int contacts);
     [[nodiscard]] int freedoms() const { return static_cast<int>(velocity.size()); }
     [[nodiscard]] int contacts() const { return static_cast<int>(restitution.size()); }
@@ -79,23 +83,26 @@ struct CollisionSolution {
     FreedomVector velocity;
     /// P_cs of eq. (6), D (q'+ - q'-); J_n^T p_n + J_t^T p_t for `poisson` and `mass_weighted`.
     FreedomVector momentum_change;
-    /// Normal impulse per contact, N s, >= 0 for `poisson`. For `paper`, whose change of momentum is in general no sum of
-    /// contact impulses, the smallest that give the same change of normal velocities.
+    /// Normal impulse per contact, N s, >= 0 for `poisson`. For `paper`, whose change of momentum is in
+    /// general no sum of contact impulses, the smallest that give the same change of normal velocities.
     ContactVector normal_impulse;
     /// Tangential impulse per contact, N s, along +tangent, at most friction times normal_impulse.
     ContactVector tangent_impulse;
-    /// Kinetic energy gained minus the work of moving walls, J: the sum of p (v- + v+)/2 over all contacts. Never
-    /// positive for `poisson` (but for rounding); with walls at rest it is the change of kinetic energy.
+    /// Kinetic energy gained minus the work of moving walls, J: the sum of p (v- + v+)/2 over all contacts.
+    /// Never positive for `poisson` (but for rounding); with walls at rest it is the change of kinetic
+    /// energy.
     double energy_change{0.0};
-    /// Share of the restitution impulses that was applied, 0..1; below 1 only where all of them would have added energy
-    /// (unequal restitutions, or friction coupled with the normals).
+    /// Share of the restitution impulses that was applied, 0..1; below 1 only where all of them would have
+    /// added energy (unequal restitutions, or friction coupled with the normals).
     double restitution_scale{1.0};
     /// Pivots and active-set changes, all phases.
     int iterations{0};
-    /// Contacts that no motion can satisfy (squeezed between closing walls), left without impulse. Never with walls at
-    /// rest.
+    /// Contacts left without impulse because no motion can satisfy them, or only one that takes 1000 times
+    /// the impulse of the fastest contact alone (squeezed between closing walls, a narrow closing wedge).
+    /// Never with walls at rest.
     int squeezed{0};
-    /// An exact solver did not finish within its bound; the guaranteed but approximate one gave the answer.
+    /// No exact solution was found within the bound, or none exists (jammed by friction between moving
+    /// walls); the guaranteed but approximate method gave the answer.
     bool fell_back{false};
 };
 
@@ -116,9 +123,10 @@ struct CollisionWorkspace {
     double tableau[k_complementarity * (k_complementarity + 2)];
 };
 
-/// Resolves all collisions of `problem`. Always gives a solution; deterministic; neither allocates nor throws. The time
-/// is bounded (see the benchmark collision/worst).
-void resolve_collisions(CollisionMethod method, const CollisionProblem& problem, CollisionWorkspace& workspace,
-                        CollisionSolution& solution) noexcept;
+/// Resolves all collisions of `problem`. Always gives a solution; deterministic; neither allocates nor
+/// throws. All iterations are bounded: the slowest of the benchmarks, collision/hard, shows what the bound
+/// amounts to.
+void resolve_collisions(CollisionMethod method, const CollisionProblem& problem,
+                        CollisionWorkspace& workspace, CollisionSolution& solution) noexcept;
 
 } // namespace haptics
