@@ -219,6 +219,8 @@ TEST_CASE("an exception ends the loop, is told, and goes no further") {
     REQUIRE(loop.start(good, ordinary()));
     wait_until([&good] { return good.steps >= 3; });
     CHECK(loop.failure().empty());
+    // a step outlives its loop
+    loop.stop();
 }
 
 TEST_CASE("a step may stop its own loop without waiting for itself") {
