@@ -13,6 +13,7 @@ void initialize_haptics(ModuleInitializationLevel level) {
     if (level == MODULE_INITIALIZATION_LEVEL_SCENE) {
         GDREGISTER_ABSTRACT_CLASS(HapticServer);
         register_engine_singleton<HapticServer>();
+        on_unload([] { HapticServer::stop_all(); });
     }
     if (level == MODULE_INITIALIZATION_LEVEL_EDITOR) {
         for (const std::string_view page : class_reference_pages()) {

@@ -34,6 +34,21 @@ HapticServer* HapticServer::get_singleton() {
     return singleton_;
 }
 
+void HapticServer::stop_all() {
+    if (singleton_ == nullptr)
+        return;
+    for (auto& [id, world] : singleton_->worlds_)
+        world->stop();
+}
+
+HapticWorld* HapticServer::find(int64_t world) const {
+    const auto found = worlds_.find(world);
+    if (found != worlds_.end())
+        return found->second.get();
+    print_error("HapticServer: there is no world " + std::to_string(world) + ". Use an id from world_create().");
+    return nullptr;
+}
+
 String HapticServer::get_version() const {
     return HAPTICS_VERSION;
 }
@@ -48,9 +63,285 @@ Dictionary HapticServer::get_build_info() const {
     return info;
 }
 
+int64_t HapticServer::world_create() {
+    const int64_t id = next_world_++;
+    worlds_[id] = std::make_unique<HapticWorld>();
+    return id;
+}
+
+void HapticServer::world_free(int64_t world) {
+    if (HapticWorld* w = find(world)) {
+        w->stop();
+        worlds_.erase(world);
+    }
+}
+
+PackedStringArray HapticServer::world_configure(int64_t world, const Dictionary& settings) {
+    Problems problems;
+    if (HapticWorld* w = find(world))
+        w->configure(settings, problems);
+    return problems.to_godot();
+}
+
+PackedStringArray HapticServer::world_set_tool(int64_t world, const Dictionary& tool) {
+    Problems problems;
+    if (HapticWorld* w = find(world))
+        w->set_tool(tool, problems);
+    return problems.to_godot();
+}
+
+PackedStringArray HapticServer::world_set_device(int64_t world, const Dictionary& device) {
+    Problems problems;
+    if (HapticWorld* w = find(world))
+        w->set_device(device, problems);
+    return problems.to_godot();
+}
+
+PackedStringArray HapticServer::world_set_body(int64_t world, int64_t body, const Dictionary& description) {
+    Problems problems;
+    if (body <= 0)
+        problems.add("Body ids must be positive, got " + std::to_string(body) + ".");
+    else if (HapticWorld* w = find(world))
+        w->set_body(body, description, problems);
+    return problems.to_godot();
+}
+
+void HapticServer::world_remove_body(int64_t world, int64_t body) {
+    if (HapticWorld* w = find(world))
+        w->remove_body(body);
+}
+
+PackedStringArray HapticServer::world_start(int64_t world, bool realtime, double record_seconds) {
+    Problems problems;
+    if (HapticWorld* w = find(world))
+        w->start(realtime, record_seconds, problems);
+    return problems.to_godot();
+}
+
+void HapticServer::world_stop(int64_t world) {
+    if (HapticWorld* w = find(world))
+        w->stop();
+}
+
+bool HapticServer::world_is_running(int64_t world) const {
+    const HapticWorld* w = find(world);
+    return w != nullptr && w->running();
+}
+
+PackedStringArray HapticServer::world_submit(int64_t world, const PackedInt64Array& bodies, const PackedFloat64Array& states,
+                                             double tick, const PackedFloat64Array& gravity) {
+    Problems problems;
+    HapticWorld* w = find(world);
+    if (w == nullptr)
+        return problems.to_godot();
+    const auto wanted = static_cast<std::size_t>(bodies.size()) * BodyRegistry::k_state;
+    if (static_cast<std::size_t>(states.size()) != wanted || gravity.size() != 2) {
+        problems.add("world_submit() got " + std::to_string(states.size()) + " state numbers for " +
+                     std::to_string(bodies.size()) + " bodies (6 each: x, y, angle, vx, vy, angular velocity) and " +
+                     std::to_string(gravity.size()) + " for gravity (2).");
+        return problems.to_godot();
+    }
+    w->submit(bodies.span(), states.span(), tick, Vec2(gravity[0], gravity[1]), problems);
+    return problems.to_godot();
+}
+
+int64_t HapticServer::world_advance(int64_t world, double seconds) {
+    HapticWorld* w = find(world);
+    return w == nullptr ? 0 : w->advance(seconds);
+}
+
+void HapticServer::world_refresh(int64_t world) {
+    if (HapticWorld* w = find(world))
+        w->refresh();
+}
+
+PackedFloat64Array HapticServer::world_get_state(int64_t world) const {
+    PackedFloat64Array out;
+    const HapticWorld* w = find(world);
+    if (w == nullptr)
+        return out;
+    const HapticReport& r = w->report();
+    const Pose tool = center_to_node(r.proxy, w->tool_center());
+    out.resize(STATE_COUNT);
+    double* s = out.ptrw();
+    const auto put3 = [s](int at, const Vec3& v) { std::copy_n(v.data(), 3, s + at); };
+    s[STATE_STEP] = static_cast<double>(r.step);
+    s[STATE_TIME] = r.time;
+    put3(STATE_TOOL_X, tool);
+    put3(STATE_GRIP_X, r.grip);
+    put3(STATE_DEVICE_X, r.device);
+    put3(STATE_VELOCITY_X, r.velocity);
+    put3(STATE_FORCE_X, r.force);
+    put3(STATE_CONTACT_FORCE_X, r.contact);
+    s[STATE_CONTACTS] = r.contacts;
+    s[STATE_COLLIDING] = r.colliding;
+    s[STATE_STICKING] = r.sticking;
+    s[STATE_SLIDING] = r.sliding;
+    s[STATE_PENETRATION] = r.max_penetration;
+    s[STATE_ENERGY_INJECTED] = r.energy_injected;
+    s[STATE_ARMED] = r.armed ? 1.0 : 0.0;
+    s[STATE_HELD] = r.held ? 1.0 : 0.0;
+    s[STATE_FAULTS] = static_cast<double>(r.faults);
+    s[STATE_BUTTONS] = static_cast<double>(r.buttons);
+    return out;
+}
+
+Array HapticServer::world_get_contacts(int64_t world) const {
+    Array out;
+    const HapticWorld* w = find(world);
+    if (w == nullptr)
+        return out;
+    static constexpr std::array<const char*, 4> k_states{"none", "colliding", "sticking", "sliding"};
+    const HapticReport& r = w->report();
+    for (std::int32_t i = 0; i < r.contact_count; ++i) {
+        const ContactReport& c = r.contact_list[static_cast<std::size_t>(i)];
+        Dictionary d;
+        d["body"] = static_cast<int64_t>(c.body);
+        d["state"] = k_states[static_cast<std::size_t>(c.state)];
+        d["position"] = PackedFloat64Array({c.position.x(), c.position.y()});
+        d["normal"] = PackedFloat64Array({c.normal.x(), c.normal.y()});
+        d["normal_force"] = c.normal_force;
+        d["tangent_force"] = c.tangent_force;
+        d["penetration"] = c.penetration;
+        out.push_back(d);
+    }
+    return out;
+}
+
+Array HapticServer::world_take_events(int64_t world) {
+    HapticWorld* w = find(world);
+    return w == nullptr ? Array() : w->take_events();
+}
+
+PackedFloat64Array HapticServer::world_take_impulses(int64_t world) {
+    PackedFloat64Array out;
+    HapticWorld* w = find(world);
+    if (w == nullptr)
+        return out;
+    for (const GivenImpulse& g : w->take_impulses()) {
+        out.push_back(static_cast<double>(g.body));
+        for (int i = 0; i < 3; ++i)
+            out.push_back(g.impulse(i));
+    }
+    return out;
+}
+
+PackedStringArray HapticServer::world_get_faults(int64_t world) const {
+    PackedStringArray out;
+    const HapticWorld* w = find(world);
+    if (w == nullptr)
+        return out;
+    for (int bit = 0; bit < k_fault_count; ++bit)
+        if (((static_cast<std::uint32_t>(w->report().faults) >> bit) & 1U) != 0U)
+            out.push_back(describe_fault(bit));
+    return out;
+}
+
+Dictionary HapticServer::world_get_statistics(int64_t world) const {
+    const HapticWorld* w = find(world);
+    return w == nullptr ? Dictionary() : w->statistics();
+}
+
+void HapticServer::world_aim(int64_t world, const PackedFloat64Array& grip) {
+    HapticWorld* w = find(world);
+    if (w == nullptr)
+        return;
+    if (grip.size() != 3) {
+        print_error("world_aim() needs 3 numbers (x, y, angle), got " + std::to_string(grip.size()) + ".");
+        return;
+    }
+    w->aim(Pose(grip[0], grip[1], grip[2]));
+}
+
+void HapticServer::world_hold(int64_t world, bool held) {
+    if (HapticWorld* w = find(world))
+        w->send(held ? RunnerCommand::hold : RunnerCommand::release);
+}
+
+void HapticServer::world_arm(int64_t world, bool armed) {
+    if (HapticWorld* w = find(world))
+        w->send(armed ? RunnerCommand::arm : RunnerCommand::disarm);
+}
+
+void HapticServer::world_set_paused(int64_t world, bool paused) {
+    if (HapticWorld* w = find(world))
+        w->send(paused ? RunnerCommand::pause : RunnerCommand::resume);
+}
+
+void HapticServer::world_press_stop(int64_t world) {
+    if (HapticWorld* w = find(world))
+        w->send(RunnerCommand::stop);
+}
+
+PackedStringArray HapticServer::world_save_recording(int64_t world, const String& path) {
+    Problems problems;
+    if (HapticWorld* w = find(world))
+        w->save_recording(path.utf8(), problems);
+    return problems.to_godot();
+}
+
 void HapticServer::_bind_methods() {
     ClassDB::bind_method(D_METHOD("get_version"), &HapticServer::get_version);
     ClassDB::bind_method(D_METHOD("get_build_info"), &HapticServer::get_build_info);
+    ClassDB::bind_method(D_METHOD("world_create"), &HapticServer::world_create);
+    ClassDB::bind_method(D_METHOD("world_free", "world"), &HapticServer::world_free);
+    ClassDB::bind_method(D_METHOD("world_configure", "world", "settings"), &HapticServer::world_configure);
+    ClassDB::bind_method(D_METHOD("world_set_tool", "world", "tool"), &HapticServer::world_set_tool);
+    ClassDB::bind_method(D_METHOD("world_set_device", "world", "device"), &HapticServer::world_set_device);
+    ClassDB::bind_method(D_METHOD("world_set_body", "world", "body", "description"), &HapticServer::world_set_body);
+    ClassDB::bind_method(D_METHOD("world_remove_body", "world", "body"), &HapticServer::world_remove_body);
+    ClassDB::bind_method(D_METHOD("world_start", "world", "realtime", "record_seconds"), &HapticServer::world_start,
+                         DEFVAL(0.0));
+    ClassDB::bind_method(D_METHOD("world_stop", "world"), &HapticServer::world_stop);
+    ClassDB::bind_method(D_METHOD("world_is_running", "world"), &HapticServer::world_is_running);
+    ClassDB::bind_method(D_METHOD("world_submit", "world", "bodies", "states", "tick", "gravity"),
+                         &HapticServer::world_submit);
+    ClassDB::bind_method(D_METHOD("world_advance", "world", "seconds"), &HapticServer::world_advance);
+    ClassDB::bind_method(D_METHOD("world_refresh", "world"), &HapticServer::world_refresh);
+    ClassDB::bind_method(D_METHOD("world_get_state", "world"), &HapticServer::world_get_state);
+    ClassDB::bind_method(D_METHOD("world_get_contacts", "world"), &HapticServer::world_get_contacts);
+    ClassDB::bind_method(D_METHOD("world_take_events", "world"), &HapticServer::world_take_events);
+    ClassDB::bind_method(D_METHOD("world_take_impulses", "world"), &HapticServer::world_take_impulses);
+    ClassDB::bind_method(D_METHOD("world_get_faults", "world"), &HapticServer::world_get_faults);
+    ClassDB::bind_method(D_METHOD("world_get_statistics", "world"), &HapticServer::world_get_statistics);
+    ClassDB::bind_method(D_METHOD("world_aim", "world", "grip"), &HapticServer::world_aim);
+    ClassDB::bind_method(D_METHOD("world_hold", "world", "held"), &HapticServer::world_hold);
+    ClassDB::bind_method(D_METHOD("world_arm", "world", "armed"), &HapticServer::world_arm);
+    ClassDB::bind_method(D_METHOD("world_set_paused", "world", "paused"), &HapticServer::world_set_paused);
+    ClassDB::bind_method(D_METHOD("world_press_stop", "world"), &HapticServer::world_press_stop);
+    ClassDB::bind_method(D_METHOD("world_save_recording", "world", "path"), &HapticServer::world_save_recording);
+
+    BIND_ENUM_CONSTANT(STATE_STEP);
+    BIND_ENUM_CONSTANT(STATE_TIME);
+    BIND_ENUM_CONSTANT(STATE_TOOL_X);
+    BIND_ENUM_CONSTANT(STATE_TOOL_Y);
+    BIND_ENUM_CONSTANT(STATE_TOOL_ANGLE);
+    BIND_ENUM_CONSTANT(STATE_GRIP_X);
+    BIND_ENUM_CONSTANT(STATE_GRIP_Y);
+    BIND_ENUM_CONSTANT(STATE_GRIP_ANGLE);
+    BIND_ENUM_CONSTANT(STATE_DEVICE_X);
+    BIND_ENUM_CONSTANT(STATE_DEVICE_Y);
+    BIND_ENUM_CONSTANT(STATE_DEVICE_ANGLE);
+    BIND_ENUM_CONSTANT(STATE_VELOCITY_X);
+    BIND_ENUM_CONSTANT(STATE_VELOCITY_Y);
+    BIND_ENUM_CONSTANT(STATE_VELOCITY_ANGLE);
+    BIND_ENUM_CONSTANT(STATE_FORCE_X);
+    BIND_ENUM_CONSTANT(STATE_FORCE_Y);
+    BIND_ENUM_CONSTANT(STATE_TORQUE);
+    BIND_ENUM_CONSTANT(STATE_CONTACT_FORCE_X);
+    BIND_ENUM_CONSTANT(STATE_CONTACT_FORCE_Y);
+    BIND_ENUM_CONSTANT(STATE_CONTACT_TORQUE);
+    BIND_ENUM_CONSTANT(STATE_CONTACTS);
+    BIND_ENUM_CONSTANT(STATE_COLLIDING);
+    BIND_ENUM_CONSTANT(STATE_STICKING);
+    BIND_ENUM_CONSTANT(STATE_SLIDING);
+    BIND_ENUM_CONSTANT(STATE_PENETRATION);
+    BIND_ENUM_CONSTANT(STATE_ENERGY_INJECTED);
+    BIND_ENUM_CONSTANT(STATE_ARMED);
+    BIND_ENUM_CONSTANT(STATE_HELD);
+    BIND_ENUM_CONSTANT(STATE_FAULTS);
+    BIND_ENUM_CONSTANT(STATE_BUTTONS);
+    BIND_ENUM_CONSTANT(STATE_COUNT);
 }
 
 } // namespace haptics

@@ -1,0 +1,108 @@
+#include <haptics/classes/body_registry.hpp>
+
+#include <haptics/core/geometry/seams.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptics {
+
+Pose node_to_center(const Pose& node, const Vec2& center) {
+    const Vec2 p = node.head<2>() + rotate(node.z(), center);
+    return {p.x(), p.y(), node.z()};
+}
+
+Pose center_to_node(const Pose& at_center, const Vec2& center) {
+    const Vec2 p = at_center.head<2>() - rotate(at_center.z(), center);
+    return {p.x(), p.y(), at_center.z()};
+}
+
+void BodyRegistry::set(std::int64_t id, BodySpec spec) {
+    spec.body.id = static_cast<std::uint64_t>(id);
+    bodies_[id] = std::move(spec);
+    stale_ = true;
+}
+
+void BodyRegistry::remove(std::int64_t id) {
+    bodies_.erase(id);
+}
+
+const BodySpec* BodyRegistry::find(std::int64_t id) const {
+    const auto found = bodies_.find(id);
+    return found == bodies_.end() ? nullptr : &found->second;
+}
+
+std::vector<std::int64_t> BodyRegistry::build(std::span<const std::int64_t> ids, std::span<const double> states,
+                                              Neighborhood& out) {
+    std::vector<std::int64_t> unknown;
+    BodySet& set = out.bodies;
+    set.body_count = 0;
+    set.piece_count = 0;
+    out.overflow = 0;
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        const BodySpec* spec = find(ids[i]);
+        if (spec == nullptr) {
+            unknown.push_back(ids[i]);
+            continue;
+        }
+        const auto pieces = static_cast<std::int32_t>(spec->pieces.size());
+        if (set.body_count == k_max_bodies || set.piece_count + pieces > k_max_pieces) {
+            ++out.overflow;
+            continue;
+        }
+        const double* s = states.data() + i * k_state;
+        if (!std::all_of(s, s + k_state, [](double v) { return std::isfinite(v); })) {
+            unknown.push_back(ids[i]);
+            continue;
+        }
+        Body& b = set.body[static_cast<std::size_t>(set.body_count++)];
+        b = spec->body;
+        b.pose = node_to_center(Pose(s[0], s[1], s[2]), spec->center);
+        b.velocity = b.kind == BodyKind::fixed ? Twist(Twist::Zero()) : Twist(s[3], s[4], s[5]);
+        b.first_piece = set.piece_count;
+        b.piece_count = pieces;
+        for (const Piece& p : spec->pieces)
+            set.piece[static_cast<std::size_t>(set.piece_count++)] = p;
+    }
+    join_fixed(set);
+    return unknown;
+}
+
+// Walls that abut are one solid: what lies inside it must not be felt.
+void BodyRegistry::join_fixed(BodySet& set) {
+    std::vector<Placed> now;
+    std::vector<SeamPiece> solid;
+    std::vector<const Surface*> surfaces;
+    for (std::int32_t i = 0; i < set.body_count; ++i) {
+        const Body& b = set.body[static_cast<std::size_t>(i)];
+        if (b.kind != BodyKind::fixed)
+            continue;
+        now.push_back({b.id, b.pose});
+        const auto same = [&b](const Surface* s) {
+            return s->stiffness == b.surface.stiffness && s->damping == b.surface.damping &&
+                   s->static_friction == b.surface.static_friction && s->dynamic_friction == b.surface.dynamic_friction &&
+                   s->restitution == b.surface.restitution;
+        };
+        auto group = std::find_if(surfaces.begin(), surfaces.end(), same);
+        if (group == surfaces.end())
+            group = surfaces.insert(surfaces.end(), &b.surface);
+        for (std::int32_t k = 0; k < b.piece_count; ++k) {
+            Piece& p = set.piece[static_cast<std::size_t>(b.first_piece + k)];
+            if (!p.one_way)
+                solid.push_back({&p.convex, b.pose, static_cast<int>(group - surfaces.begin())});
+        }
+    }
+    if (!stale_ && now == joined_) {
+        for (std::size_t i = 0; i < solid.size(); ++i)
+            *solid[i].convex = joined_pieces_[i];
+        return;
+    }
+    mark_seams(solid);
+    joined_ = std::move(now);
+    joined_pieces_.clear();
+    for (const SeamPiece& p : solid)
+        joined_pieces_.push_back(*p.convex);
+    stale_ = false;
+}
+
+} // namespace haptics

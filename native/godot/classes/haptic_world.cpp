@@ -1,0 +1,328 @@
+#include <haptics/classes/haptic_world.hpp>
+
+#include <haptics/core/local_model/validate.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace haptics {
+
+using namespace godot;
+
+namespace {
+
+// a tool whose surface is not given leaves the law of what it touches unchanged
+Surface neutral_surface() {
+    Surface s;
+    s.stiffness = std::numeric_limits<double>::infinity();
+    s.damping = std::numeric_limits<double>::infinity();
+    s.static_friction = 1.0;
+    s.dynamic_friction = 1.0;
+    s.restitution = 0.0;
+    return s;
+}
+
+// largest error of a reading per coordinate, for the velocity estimate
+Vec3 reading_error(const SimulatedPantographOptions& o) {
+    switch (o.encoder_model) {
+    case EncoderModel::exact: return {1e-9, 1e-9, 1e-8};
+    case EncoderModel::handle: return 0.5 * o.encoder_resolution;
+    case EncoderModel::joint: break;
+    }
+    // half a count at the motor axis, seen at the end of a stretched arm
+    const FiveBarGeometry& bar = o.geometry.bar[0];
+    const double half = std::numbers::pi / o.geometry.motor.counts_per_revolution;
+    const double reach = bar.proximal_length[0] + bar.distal_length[0];
+    const double lever = (o.geometry.attachment[0] - o.geometry.attachment[1]).norm();
+    return {half * reach, half * reach, lever > 0.0 ? 2.0 * half * reach / lever : half};
+}
+
+std::string seconds_text(double s) {
+    return std::to_string(s) + " s";
+}
+
+} // namespace
+
+void HandHook::before_step(const Session& session) noexcept {
+    const auto newest = targets_.try_read();
+    if (newest.is_new)
+        device_.set_target({device_.time(), session.handle_for(newest.value.grip)});
+}
+
+void HapticWorld::configure(const Dictionary& settings, Problems& problems) {
+    if (running()) {
+        problems.add("The world runs: stop it before its settings change.");
+        return;
+    }
+    const WorldSettings read = read_world_settings(settings, problems);
+    if (problems.none())
+        settings_ = read;
+}
+
+void HapticWorld::set_tool(const Dictionary& tool, Problems& problems) {
+    if (running()) {
+        problems.add("The world runs: stop it before the tool changes.");
+        return;
+    }
+    DictionaryReader r(tool, "tool.", problems);
+    ToolModel t;
+    const BodySpec spec = read_body(r.dictionary("body"), "tool.", neutral_surface(), problems);
+    const Vec2 grip = r.vec2("grip_point", Vec2::Zero());
+    t.grip.point = grip - spec.center;
+    t.grip.pose = r.flag("grip_pose", true);
+    tool_start_ = r.vec3("start", Vec3::Zero());
+    r.finish();
+    t.mass = spec.body.mass;
+    t.inertia = spec.body.inertia;
+    if (spec.pieces.size() > static_cast<std::size_t>(k_max_pieces)) {
+        problems.add("tool.shapes needs " + std::to_string(spec.pieces.size()) + " convex pieces, at most " +
+                     std::to_string(k_max_pieces) + " fit. Draw it with fewer corners.");
+        return;
+    }
+    t.shape.body_count = 1;
+    t.shape.body[0] = spec.body;
+    t.shape.body[0].id = 0;
+    t.shape.body[0].kind = BodyKind::tool;
+    t.shape.body[0].first_piece = 0;
+    t.shape.body[0].piece_count = static_cast<std::int32_t>(spec.pieces.size());
+    t.shape.piece_count = t.shape.body[0].piece_count;
+    std::copy(spec.pieces.begin(), spec.pieces.end(), t.shape.piece.begin());
+    Model model;
+    model.tool = t;
+    problems.add(validate(model));
+    if (!problems.none())
+        return;
+    tool_ = t;
+    tool_center_ = spec.center;
+}
+
+void HapticWorld::set_device(const Dictionary& device, Problems& problems) {
+    if (running()) {
+        problems.add("The world runs: stop it before the device changes.");
+        return;
+    }
+    const SimulatedPantographOptions read = read_simulated_pantograph(device, problems);
+    if (problems.none())
+        device_options_ = read;
+}
+
+void HapticWorld::set_body(std::int64_t id, const Dictionary& body, Problems& problems) {
+    BodySpec spec = read_body(body, "", Surface{}, problems);
+    if (problems.none())
+        bodies_.set(id, std::move(spec));
+}
+
+void HapticWorld::remove_body(std::int64_t id) {
+    bodies_.remove(id);
+    complained_.erase(id);
+}
+
+void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const double> states, double tick, const Vec2& gravity,
+                         Problems& problems) {
+    if (!running())
+        return;
+    if (!std::isfinite(tick) || tick < 1e-3 || tick > 1.0 || !gravity.allFinite()) {
+        problems.add("The tick is " + seconds_text(tick) + "; it must lie between 0.001 and 1 s, and gravity must be finite.");
+        return;
+    }
+    Neighborhood& n = runner_->neighborhood();
+    for (const std::int64_t id : bodies_.build(ids, states, n))
+        if (!complained_[id]) {
+            complained_[id] = true;
+            problems.add("Body " + std::to_string(id) +
+                         " was left out: it is not registered, or its pose or velocity is not a number.");
+        }
+    n.sequence = ++sequence_;
+    n.time = runner_->now();
+    n.tick = tick;
+    n.gravity = gravity;
+    n.echo_step = echo_step_;
+    n.echo = echo_;
+    n.echo_count = echo_count_;
+    runner_->publish();
+    ++ve_ticks_;
+}
+
+void HapticWorld::start(bool realtime, double record_seconds, Problems& problems) {
+    if (running())
+        return;
+    if (!tool_)
+        problems.add("The world has no tool. Add a HapticTool2D with a collision shape.");
+    if (!device_options_)
+        problems.add("The world has no device. Set a HapticDevice resource.");
+    if (!std::isfinite(record_seconds) || record_seconds < 0.0 || record_seconds > 3600.0)
+        problems.add("A recording of " + seconds_text(record_seconds) + " is not possible; at most 3600 s.");
+    if (!problems.none())
+        return;
+    device_ = std::make_unique<SimulatedPantograph>(*device_options_);
+    hand_ = std::make_unique<HandHook>(*device_);
+    Model model;
+    model.tool = *tool_;
+    model.settings = settings_.model;
+    SessionSettings session = settings_.session;
+    session.device_delay = device_options_->command_delay;
+    session.reading_error = reading_error(*device_options_);
+    OutputGate gate(settings_.safety, device_->kinematics());
+    gate.set_homed(true); // a simulated device knows its zero
+    auto made = std::make_unique<Session>(session, model, gate, *device_, node_to_center(tool_start_, tool_center_));
+    gains_ = made->gains();
+    report_ = made->report();
+    runner_ = std::make_unique<HapticRunner>(std::move(made), hand_.get());
+    runner_->record(record_seconds);
+    realtime_ = realtime;
+    sequence_ = 0;
+    ve_ticks_ = 0;
+    echo_step_ = 0;
+    echo_count_ = 0;
+    taken_.clear();
+    complained_.clear();
+    given_report_ = HapticReport{};
+    scheduling_ = "lock-step";
+    scheduling_details_ = "Lock-step: the haptic steps run on the main thread, at each physics tick.";
+    if (!realtime)
+        return;
+    steal_.begin();
+    LoopOptions options;
+    options.rate_hz = settings_.loop.rate_hz;
+    options.priority = settings_.loop.priority;
+    options.cpu = settings_.loop.cpu;
+    if (!runner_->start(options)) {
+        problems.add(runner_->thread().report().failure);
+        stop();
+        return;
+    }
+    scheduling_ = runner_->thread().report().summary();
+    scheduling_details_ = runner_->thread().report().describe();
+}
+
+void HapticWorld::stop() {
+    if (runner_ != nullptr) {
+        runner_->stop();
+        refresh();
+    }
+    runner_.reset();
+    hand_.reset();
+    device_.reset();
+}
+
+int HapticWorld::advance(double seconds) {
+    if (!running() || realtime_ || !std::isfinite(seconds) || seconds <= 0.0)
+        return 0;
+    return runner_->advance(seconds);
+}
+
+void HapticWorld::refresh() {
+    if (!running())
+        return;
+    report_ = runner_->latest_report();
+    runner_->collect();
+}
+
+std::vector<GivenImpulse> HapticWorld::take_impulses() {
+    // the bodies of the next snapshot reflect what was handed out at the last call
+    echo_step_ = given_report_.step;
+    echo_ = given_report_.movable;
+    echo_count_ = given_report_.movable_count;
+    given_report_ = report_;
+    std::vector<GivenImpulse> out;
+    for (std::int32_t i = 0; i < report_.movable_count; ++i) {
+        const MovableBelief& m = report_.movable[static_cast<std::size_t>(i)];
+        const auto id = static_cast<std::int64_t>(m.id);
+        Taken& taken = taken_[id];
+        if (taken.epoch != m.epoch)
+            taken = {m.epoch, Wrench::Zero()};
+        const Wrench delta = m.given - taken.given;
+        taken.given = m.given;
+        if (!delta.isZero(0.0))
+            out.push_back({id, delta});
+    }
+    return out;
+}
+
+Array HapticWorld::take_events() {
+    Array out;
+    if (!running())
+        return out;
+    runner_->drain_events([&out](const ContactEvent& e) {
+        static constexpr std::array<const char*, 4> k_names{"began", "ended", "impact", "slip"};
+        Dictionary d;
+        d["kind"] = k_names[static_cast<std::size_t>(e.kind)];
+        d["body"] = static_cast<int64_t>(e.body);
+        d["time"] = e.time;
+        d["position"] = PackedFloat64Array({e.position[0], e.position[1]});
+        d["normal"] = PackedFloat64Array({e.normal[0], e.normal[1]});
+        d["impulse"] = e.impulse;
+        out.push_back(d);
+    });
+    return out;
+}
+
+Dictionary HapticWorld::statistics() const {
+    Dictionary d;
+    if (!running())
+        return d;
+    const LoopStatistics s = runner_->statistics();
+    d["mode"] = realtime_ ? "realtime" : "lockstep";
+    d["haptic_rate_hz"] = settings_.loop.rate_hz;
+    d["steps"] = static_cast<int64_t>(s.steps);
+    d["missed_deadlines"] = static_cast<int64_t>(s.missed_deadlines);
+    d["skipped_periods"] = static_cast<int64_t>(s.skipped_periods);
+    d["ve_ticks"] = static_cast<int64_t>(ve_ticks_);
+    Dictionary wake;
+    wake["p50"] = static_cast<double>(s.wake_latency.p50_ns()) * 1e-3;
+    wake["p99"] = static_cast<double>(s.wake_latency.percentile(0.99)) * 1e-3;
+    wake["p999"] = static_cast<double>(s.wake_latency.percentile(0.999)) * 1e-3;
+    wake["max"] = static_cast<double>(s.wake_latency.max_ns) * 1e-3;
+    d["wake_latency_us"] = wake;
+    Dictionary step;
+    step["p50"] = s.step_time.p50_ns();
+    step["p99"] = s.step_time.percentile(0.99);
+    step["max"] = s.step_time.max_ns;
+    d["step_ns"] = step;
+    d["scheduling"] = String(scheduling_);
+    d["scheduling_details"] = String(scheduling_details_);
+    if (realtime_) {
+        const auto stolen = steal_.fraction();
+        d["host_steal"] = stolen ? Variant(*stolen) : Variant();
+    }
+    const RunFigures& run = report_.run;
+    d["max_force_n"] = run.max_force;
+    d["rms_position_error_m"] = run.error_count > 0 ? std::sqrt(run.error_sum / static_cast<double>(run.error_count)) : 0.0;
+    d["max_penetration_m"] = run.max_penetration;
+    d["energy_injected_j"] = report_.energy_injected;
+    d["collisions"] = static_cast<int64_t>(run.collisions);
+    d["fallbacks"] = static_cast<int64_t>(report_.fallbacks);
+    d["patch_overflow"] = static_cast<int64_t>(report_.patch_overflow);
+    d["movable_overflow"] = static_cast<int64_t>(report_.movable_overflow);
+    d["rows_dropped"] = static_cast<int64_t>(runner_->rows_dropped());
+    d["events_dropped"] = static_cast<int64_t>(runner_->events_dropped());
+    PackedStringArray faults;
+    for (int bit = 0; bit < k_fault_count; ++bit)
+        if ((static_cast<std::uint32_t>(report_.faults) >> bit) & 1U)
+            faults.push_back(describe_fault(bit));
+    d["faults"] = faults;
+    d["coupling_stiffness_n_m"] = gains_.stiffness.x();
+    d["coupling_damping_n_s_m"] = gains_.damping.x();
+    return d;
+}
+
+void HapticWorld::aim(const Pose& grip) {
+    if (hand_ != nullptr && grip.allFinite())
+        hand_->aim(grip);
+}
+
+bool HapticWorld::send(RunnerCommand command) {
+    return running() && runner_->try_send(command);
+}
+
+void HapticWorld::save_recording(const std::string& path, Problems& problems) {
+    if (!running() || !runner_->recording()) {
+        problems.add("There is no recording: start the world with a recording time.");
+        return;
+    }
+    std::string error;
+    if (!runner_->write_recording(path, error))
+        problems.add(error);
+}
+
+} // namespace haptics

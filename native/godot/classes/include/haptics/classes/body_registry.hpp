@@ -1,0 +1,60 @@
+#pragma once
+/// The bodies that the scene has made known to a world: shapes and figures once, poses at every physics tick.
+
+#include <haptics/classes/dictionary_reader.hpp>
+#include <haptics/core/local_model/neighborhood.hpp>
+
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+namespace haptics {
+
+/// A body with its pieces in the axes of its center of mass.
+struct BodySpec {
+    Body body;
+    std::vector<Piece> pieces;
+    /// Center of mass in the axes of the scene's node, m.
+    Vec2 center{0.0, 0.0};
+};
+
+/// Reads one body: kind (fixed, kinematic, movable, tool), mass, inertia (0: from the shapes), center, surface, shapes, rounding.
+BodySpec read_body(const godot::Dictionary& from, const std::string& place, const Surface& fallback, Problems& problems);
+
+/// Pose of the center of mass for a pose of the node, and back.
+Pose node_to_center(const Pose& node, const Vec2& center);
+Pose center_to_node(const Pose& at_center, const Vec2& center);
+
+/// Main thread only.
+class BodyRegistry {
+  public:
+    /// Adds or replaces.
+    void set(std::int64_t id, BodySpec spec);
+    void remove(std::int64_t id);
+    [[nodiscard]] const BodySpec* find(std::int64_t id) const;
+    [[nodiscard]] std::size_t size() const { return bodies_.size(); }
+    void clear() { bodies_.clear(); }
+
+    /// Numbers per body in `states` of build(): node pose (x, y, theta), then velocity of the center of mass (x, y) and angular velocity.
+    static constexpr std::size_t k_state = 6;
+
+    /// Fills the bodies of a snapshot from ids and states; what does not fit is counted in `overflow`, unknown ids are returned.
+    std::vector<std::int64_t> build(std::span<const std::int64_t> ids, std::span<const double> states, Neighborhood& out);
+
+  private:
+    void join_fixed(BodySet& set);
+
+    std::unordered_map<std::int64_t, BodySpec> bodies_;
+    // seams between fixed bodies are found again only when the set of them changes
+    struct Placed {
+        std::uint64_t id;
+        Pose pose;
+        bool operator==(const Placed& other) const { return id == other.id && pose == other.pose; }
+    };
+    std::vector<Placed> joined_;
+    std::vector<Convex> joined_pieces_;
+    bool stale_{true};
+};
+
+} // namespace haptics

@@ -1,0 +1,109 @@
+#pragma once
+/// One haptic world of the server: settings, bodies, device and the runner. Main thread only.
+
+#include <haptics/classes/body_registry.hpp>
+#include <haptics/classes/world_settings.hpp>
+#include <haptics/realtime/haptic_runner.hpp>
+#include <haptics/realtime/host_steal.hpp>
+
+#include <atomic>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace haptics {
+
+/// Gives a simulated hand its targets on the loop thread.
+class HandHook final : public StepHook {
+  public:
+    explicit HandHook(SimulatedPantograph& device)
+        : device_(device) {}
+    /// Main thread: where the grip should be (scene frame).
+    void aim(const Pose& grip) noexcept { targets_.try_write({next_++, grip}); }
+    void before_step(const Session& session) noexcept override;
+
+  private:
+    struct Target {
+        std::uint64_t number{0};
+        Pose grip{0.0, 0.0, 0.0};
+    };
+    SimulatedPantograph& device_;
+    LatestValue<Target> targets_;
+    std::uint64_t next_{1};
+};
+
+/// What the scene reads back about a movable body.
+struct GivenImpulse {
+    std::int64_t body{0};
+    Wrench impulse{0.0, 0.0, 0.0};
+};
+
+class HapticWorld {
+  public:
+    void configure(const godot::Dictionary& settings, Problems& problems);
+    void set_tool(const godot::Dictionary& tool, Problems& problems);
+    void set_device(const godot::Dictionary& device, Problems& problems);
+    void set_body(std::int64_t id, const godot::Dictionary& body, Problems& problems);
+    void remove_body(std::int64_t id);
+
+    /// Publishes a snapshot; ids that could not be used are named in `problems` (once each).
+    void submit(std::span<const std::int64_t> ids, std::span<const double> states, double tick, const Vec2& gravity,
+                Problems& problems);
+    /// Builds session and runner; starts the thread when `realtime`.
+    void start(bool realtime, double record_seconds, Problems& problems);
+    void stop();
+    [[nodiscard]] bool running() const { return runner_ != nullptr; }
+    [[nodiscard]] bool realtime() const { return realtime_; }
+    int advance(double seconds);
+
+    /// Takes the newest report in; call once a tick before the getters.
+    void refresh();
+    [[nodiscard]] const HapticReport& report() const { return report_; }
+    /// Impulses that the tool gave since the last call.
+    std::vector<GivenImpulse> take_impulses();
+    [[nodiscard]] godot::Array take_events();
+    [[nodiscard]] godot::Dictionary statistics() const;
+    void aim(const Pose& grip);
+    bool send(RunnerCommand command);
+    void save_recording(const std::string& path, Problems& problems);
+    /// Where the simulated hand wants the grip (scene frame), for a ghost cursor.
+    [[nodiscard]] const Vec2& tool_center() const { return tool_center_; }
+    [[nodiscard]] const WorldSettings& settings() const { return settings_; }
+    [[nodiscard]] const CouplingGains& gains() const { return gains_; }
+
+  private:
+    void note_figures(const HapticReport& r);
+
+    WorldSettings settings_;
+    std::optional<ToolModel> tool_;
+    Vec2 tool_center_{0.0, 0.0};
+    Pose tool_start_{0.0, 0.0, 0.0};
+    std::optional<SimulatedPantographOptions> device_options_;
+    BodyRegistry bodies_;
+    std::unique_ptr<SimulatedPantograph> device_;
+    std::unique_ptr<HandHook> hand_;
+    std::unique_ptr<HapticRunner> runner_;
+    HostSteal steal_;
+    bool realtime_{false};
+    CouplingGains gains_;
+    HapticReport report_;
+    std::uint64_t sequence_{0};
+    std::uint64_t ve_ticks_{0};
+    // beliefs of the report whose impulses were handed out last, and of the one before
+    HapticReport given_report_;
+    std::uint64_t echo_step_{0};
+    std::array<MovableBelief, k_max_movables> echo_;
+    std::int32_t echo_count_{0};
+    struct Taken {
+        std::uint64_t epoch{0};
+        Wrench given{0.0, 0.0, 0.0};
+    };
+    std::map<std::int64_t, Taken> taken_;
+    std::map<std::int64_t, bool> complained_;
+    std::string scheduling_;
+    std::string scheduling_details_;
+};
+
+} // namespace haptics

@@ -1,0 +1,35 @@
+#pragma once
+/// From the Dictionaries of the server's methods to the core's structures. Every problem is named.
+
+#include <haptics/classes/dictionary_reader.hpp>
+#include <haptics/core/control/session.hpp>
+#include <haptics/core/local_model/model.hpp>
+#include <haptics/devices/simulated/simulated_pantograph.hpp>
+
+namespace haptics {
+
+/// How the loop runs.
+struct LoopSettings {
+    double rate_hz{1000.0};
+    int priority{80};
+    /// CPU to stay on; -1: any.
+    int cpu{-1};
+};
+
+/// What world_configure() sets.
+struct WorldSettings {
+    LoopSettings loop;
+    SessionSettings session;
+    LocalModelSettings model;
+    SafetyLimits safety;
+};
+
+WorldSettings read_world_settings(const godot::Dictionary& from, Problems& problems);
+
+/// A surface; keys stiffness, damping, static_friction, dynamic_friction, restitution.
+Surface read_surface(const godot::Dictionary& from, const std::string& place, const Surface& fallback, Problems& problems);
+
+/// A simulated pantograph and its hand.
+SimulatedPantographOptions read_simulated_pantograph(const godot::Dictionary& from, Problems& problems);
+
+} // namespace haptics

@@ -1,0 +1,161 @@
+#include <haptics/classes/world_settings.hpp>
+
+#include <haptics/core/local_model/validate.hpp>
+
+namespace haptics {
+
+using namespace godot;
+
+namespace {
+
+SafetyLimits read_safety(const Dictionary& from, Problems& problems) {
+    SafetyLimits s;
+    DictionaryReader r(from, "safety.", problems);
+    s.max_force = r.number("max_force", s.max_force);
+    s.max_torque = r.number("max_torque", s.max_torque);
+    s.force_slew = r.number("force_slew", s.force_slew);
+    s.torque_slew = r.number("torque_slew", s.torque_slew);
+    s.reference_mass = r.number("reference_mass", s.reference_mass);
+    s.reference_inertia = r.number("reference_inertia", s.reference_inertia);
+    s.max_speed = r.number("max_speed", s.max_speed);
+    s.max_angular_speed = r.number("max_angular_speed", s.max_angular_speed);
+    s.max_energy = r.number("max_energy", s.max_energy);
+    s.ramp_time = r.number("ramp_time", s.ramp_time);
+    s.pause_fade_time = r.number("pause_fade_time", s.pause_fade_time);
+    r.finish();
+    problems.add(validate(s));
+    return s;
+}
+
+PantographGeometry read_geometry(const std::string& preset, Problems& problems) {
+    if (preset.empty() || preset == "ubc_twin_pantograph")
+        return ubc_twin_pantograph();
+    if (preset == "pantograph_mk2")
+        return pantograph_mk2();
+    if (preset == "haply_2diy_v2")
+        return haply_2diy_v2();
+    if (preset == "haply_2diy_v3")
+        return haply_2diy_v3();
+    problems.add("device.geometry is \"" + preset +
+                 "\", must be one of: ubc_twin_pantograph, pantograph_mk2, haply_2diy_v2, haply_2diy_v3.");
+    return ubc_twin_pantograph();
+}
+
+std::vector<HandTarget> read_path(const std::vector<double>& table, Problems& problems) {
+    std::vector<HandTarget> path;
+    if (table.size() % 4 != 0)
+        problems.add("device.hand.path has " + std::to_string(table.size()) +
+                     " numbers; it must hold rows of t_s, x_m, y_m, theta_rad.");
+    for (std::size_t i = 0; i + 3 < table.size(); i += 4)
+        path.push_back({table[i], Pose(table[i + 1], table[i + 2], table[i + 3])});
+    return path;
+}
+
+SimulatedHandOptions read_hand(const Dictionary& from, Problems& problems) {
+    DictionaryReader r(from, "device.hand.", problems);
+    const HandKind kind = r.choice("kind", HandKind::none,
+                                   {{"none", HandKind::none},
+                                    {"constant_force", HandKind::constant_force},
+                                    {"recorded_path", HandKind::recorded_path},
+                                    {"target", HandKind::target}});
+    SimulatedHandOptions h = kind == HandKind::target ? mouse_hand() : SimulatedHandOptions{};
+    h.kind = kind;
+    h.mass = r.number("mass", h.mass);
+    h.inertia = r.number("inertia", h.inertia);
+    h.stiffness = r.number("stiffness", h.stiffness);
+    h.rotation_stiffness = r.number("rotation_stiffness", h.rotation_stiffness);
+    h.damping_ratio = r.number("damping_ratio", h.damping_ratio);
+    h.max_force = r.number("max_force", h.max_force);
+    h.max_torque = r.number("max_torque", h.max_torque);
+    h.force = r.vec3("force", h.force);
+    h.start_time = r.number("start_time", h.start_time);
+    h.path = read_path(r.numbers("path"), problems);
+    h.interpolation = r.flag("smooth", true) ? PathInterpolation::smooth : PathInterpolation::linear;
+    h.repeat = r.flag("repeat", h.repeat);
+    r.finish();
+    return h;
+}
+
+} // namespace
+
+WorldSettings read_world_settings(const Dictionary& from, Problems& problems) {
+    WorldSettings w;
+    DictionaryReader r(from, "", problems);
+    w.loop.rate_hz = r.number("rate", w.loop.rate_hz);
+    w.loop.priority = static_cast<int>(r.number("priority", w.loop.priority));
+    w.loop.cpu = static_cast<int>(r.number("cpu", w.loop.cpu));
+    w.session.step = w.loop.rate_hz > 0.0 ? 1.0 / w.loop.rate_hz : 0.0;
+    w.session.coupling = r.choice("coupling", w.session.coupling,
+                                  {{"four_channel", Coupling::four_channel},
+                                   {"virtual_coupling", Coupling::virtual_coupling},
+                                   {"direct", Coupling::direct}});
+    w.session.gains.stiffness = r.vec3("coupling_stiffness", w.session.gains.stiffness);
+    w.session.gains.damping = r.vec3("coupling_damping", w.session.gains.damping);
+    w.session.mapping.scale = r.number("mapping_scale", w.session.mapping.scale);
+    w.session.mapping.rotation = r.number("mapping_rotation", w.session.mapping.rotation);
+    w.session.mapping.offset = r.vec3("mapping_offset", w.session.mapping.offset);
+    w.session.arm_at_start = r.flag("arm_at_start", w.session.arm_at_start);
+    w.session.hold_at_start = r.flag("hold_at_start", w.session.hold_at_start);
+    w.model.contact_mode = r.choice("contact", w.model.contact_mode,
+                                    {{"penalty_impulse", ContactMode::penalty_impulse}, {"penalty", ContactMode::penalty}});
+    w.model.integrator =
+        r.choice("integrator", w.model.integrator,
+                 {{"semi_implicit", Integrator::semi_implicit}, {"linearly_implicit", Integrator::linearly_implicit}});
+    w.model.collision_method = r.choice("collision_method", w.model.collision_method,
+                                        {{"poisson", CollisionMethod::poisson},
+                                         {"mass_weighted", CollisionMethod::mass_weighted},
+                                         {"paper", CollisionMethod::paper}});
+    w.model.collision_speed = r.number("collision_speed", w.model.collision_speed);
+    w.safety = read_safety(r.dictionary("safety"), problems);
+    r.finish();
+    problems.add(validate(w.session));
+    return w;
+}
+
+Surface read_surface(const Dictionary& from, const std::string& place, const Surface& fallback, Problems& problems) {
+    Surface s;
+    DictionaryReader r(from, place, problems);
+    s.stiffness = r.number("stiffness", fallback.stiffness);
+    s.damping = r.number("damping", fallback.damping);
+    s.static_friction = r.number("static_friction", fallback.static_friction);
+    s.dynamic_friction = r.number("dynamic_friction", fallback.dynamic_friction);
+    s.restitution = r.number("restitution", fallback.restitution);
+    r.finish();
+    problems.add(validate(s));
+    return s;
+}
+
+SimulatedPantographOptions read_simulated_pantograph(const Dictionary& from, Problems& problems) {
+    SimulatedPantographOptions o;
+    DictionaryReader r(from, "device.", problems);
+    r.text("kind", "");
+    o.geometry = read_geometry(r.text("geometry", ""), problems);
+    o.inertia_model = r.choice("inertia_model", o.inertia_model,
+                               {{"constant", InertiaModel::constant}, {"linkage", InertiaModel::linkage}});
+    o.mass = r.number("mass", o.mass);
+    o.inertia = r.number("inertia", o.inertia);
+    o.viscous_friction = r.number("viscous_friction", o.viscous_friction);
+    o.rotation_viscous_friction = r.number("rotation_viscous_friction", o.rotation_viscous_friction);
+    o.coulomb_friction = r.number("coulomb_friction", o.coulomb_friction);
+    o.rotation_coulomb_friction = r.number("rotation_coulomb_friction", o.rotation_coulomb_friction);
+    o.encoder_model = r.choice(
+        "encoder_model", o.encoder_model,
+        {{"exact", EncoderModel::exact}, {"handle", EncoderModel::handle}, {"joint", EncoderModel::joint}});
+    o.encoder_resolution = r.vec3("encoder_resolution", o.encoder_resolution);
+    o.command_delay = r.number("command_delay", o.command_delay);
+    o.command_delay_steps = static_cast<int>(r.number("command_delay_steps", o.command_delay_steps));
+    o.reading_delay_steps = static_cast<int>(r.number("reading_delay_steps", o.reading_delay_steps));
+    o.limit_motors = r.flag("limit_motors", o.limit_motors);
+    o.bounded = r.flag("bounded", o.bounded);
+    o.measures_force = r.flag("measures_force", o.measures_force);
+    o.measures_velocity = r.flag("measures_velocity", o.measures_velocity);
+    o.noise = r.vec3("noise", o.noise);
+    o.seed = static_cast<std::uint64_t>(std::max(0.0, r.number("seed", 1.0)));
+    o.sub_step = r.number("sub_step", o.sub_step);
+    o.hand = read_hand(r.dictionary("hand"), problems);
+    r.finish();
+    problems.add(validate(o));
+    return o;
+}
+
+} // namespace haptics

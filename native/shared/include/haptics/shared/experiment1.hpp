@@ -1,0 +1,66 @@
+#pragma once
+/// Experiment 1 of the paper: a constant hand force of 2 N drives a rectangular tool into a wall of 15000 N/m and 20 N s/m at 500 Hz,
+/// with and without collision impulses.
+
+#include <haptics/core/control/session.hpp>
+#include <haptics/devices/simulated/simulated_pantograph.hpp>
+#include <haptics/shared/paper_wall.hpp>
+
+#include <memory>
+
+namespace haptics::shared {
+
+struct Experiment1Options {
+    ContactMode contact{ContactMode::penalty_impulse};
+    Integrator integrator{Integrator::semi_implicit};
+    Coupling coupling{Coupling::four_channel};
+    double rate_hz{500.0};
+    double tool_mass{0.3};
+    double device_mass{0.3};
+    double device_friction{1.0};
+    double push{2.0};
+    int delay_steps{1};
+    double encoder{10e-6};
+    /// Multiplies the default coupling stiffness; damping grows with its root.
+    double gain{1.0};
+    /// Distance from tool to wall at the start, m.
+    double distance{0.02};
+};
+
+struct Experiment1 {
+    explicit Experiment1(const Experiment1Options& o) {
+        SimulatedPantographOptions d;
+        d.mass = o.device_mass;
+        d.inertia = 3e-4;
+        d.viscous_friction = o.device_friction;
+        d.encoder_model = o.encoder > 0.0 ? EncoderModel::handle : EncoderModel::exact;
+        d.encoder_resolution = Vec3(o.encoder, o.encoder, 1e-4);
+        d.command_delay_steps = o.delay_steps;
+        d.measures_force = true;
+        d.limit_motors = false;
+        d.hand = pushing_hand(Wrench(0.0, -o.push, 0.0), 1.0);
+        device = std::make_unique<SimulatedPantograph>(d);
+        Model model = box_tool(o.tool_mass);
+        model.settings.contact_mode = o.contact;
+        model.settings.integrator = o.integrator;
+        SessionSettings s;
+        s.step = 1.0 / o.rate_hz;
+        s.coupling = o.coupling;
+        s.device_delay = (o.delay_steps - 1) * s.step;
+        s.reading_error = Vec3(0.5 * o.encoder, 0.5 * o.encoder, 0.5e-4);
+        Mat3 mass = Vec3(o.device_mass, o.device_mass, 3e-4).asDiagonal();
+        s.gains = default_gains(mass, s.step, 0.0);
+        s.gains.stiffness *= o.gain;
+        s.gains.damping *= std::sqrt(o.gain);
+        SafetyLimits limits;
+        limits.max_force = 20.0;
+        OutputGate gate(limits, device->kinematics());
+        gate.set_homed(true);
+        session = std::make_unique<Session>(s, model, gate, *device, Pose(0.0, 0.01 + o.distance, 0.0));
+        session->take(*floor_of(1));
+    }
+    std::unique_ptr<SimulatedPantograph> device;
+    std::unique_ptr<Session> session;
+};
+
+} // namespace haptics::shared
