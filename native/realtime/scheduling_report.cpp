@@ -63,7 +63,8 @@ std::string SchedulingReport::describe() const {
         return text.str();
     }
     text << "Haptic loop at " << rate_hz << " Hz (period " << period_ns << " ns)\n";
-    text << "  SCHED_FIFO priority " << priority << ": " << outcome(fifo, fifo_fix(priority)) << "\n";
+    text << "  SCHED_FIFO" << (fifo.asked ? " priority " + std::to_string(priority) : "") << ": "
+         << outcome(fifo, fifo_fix(priority)) << "\n";
     text << "  memory lock: " << outcome(memory, memory_fix(memory_limit_bytes)) << "\n";
     text << "  cpu latency 0: " << outcome(cpu_latency, latency_fix(cpu_latency.error)) << "\n";
     if (affinity.asked) {
