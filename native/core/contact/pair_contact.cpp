@@ -27,7 +27,7 @@ constexpr double k_tie = 1e-12;
 /// A zone's deepest end is a closest point when it is this near to the distance of the cores, m.
 constexpr double k_foot = 1e-9;
 /// Vertices nearer than this give no direction, m.
-constexpr double k_no_direction = 1e-8;
+constexpr double k_no_direction = 1e-10;
 /// Cosine of the largest turn of the normal in one handover of overlapping cores (75 degrees).
 constexpr double k_handover = 0.2588;
 /// Cosine between a one-way piece's direction and the normals that it can give (45 degrees).
@@ -92,14 +92,11 @@ bool fill_face(const Pair& pair, Face face, const FaceSeparation& s, const FaceP
     return true;
 }
 
-/// Two vertices: rounded corner against rounded corner.
-bool vertex_contact(const Pair& pair, PairContact& contact) {
-    int best_a = 0;
-    int best_b = 0;
+void nearest_vertices(const PlacedConvex& a, const PlacedConvex& b, int& best_a, int& best_b) {
     double smallest = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < pair.a.count; ++i) {
-        for (int k = 0; k < pair.b.count; ++k) {
-            const double squared = (pair.a.v(i) - pair.b.v(k)).squaredNorm();
+    for (int i = 0; i < a.count; ++i) {
+        for (int k = 0; k < b.count; ++k) {
+            const double squared = (a.v(i) - b.v(k)).squaredNorm();
             if (squared < smallest) {
                 smallest = squared;
                 best_a = i;
@@ -107,6 +104,13 @@ bool vertex_contact(const Pair& pair, PairContact& contact) {
             }
         }
     }
+}
+
+/// Two vertices: rounded corner against rounded corner.
+bool vertex_contact(const Pair& pair, PairContact& contact) {
+    int best_a = 0;
+    int best_b = 0;
+    nearest_vertices(pair.a, pair.b, best_a, best_b);
     Vec2 n = pair.a.v(best_a) - pair.b.v(best_b);
     double distance = n.norm();
     // a disc that was pushed past the center of another keeps its side
@@ -261,6 +265,30 @@ bool collide_overlapping(const Pair& pair, const FaceSeparation& on_b, const Fac
 }
 
 } // namespace
+
+double separate(const PlacedConvex& a, const PlacedConvex& b, Vec2& normal) {
+    const PairQuery query;
+    const Pair pair{a, b, query};
+    const double radii = a.radius + b.radius;
+    const FaceSeparation on_b = widest_separation(b, a);
+    const FaceSeparation on_a = b.half_plane ? FaceSeparation{-1, 0, -std::numeric_limits<double>::infinity()}
+                                             : widest_separation(a, b);
+    const Face face = on_b.separation >= on_a.separation - k_tie ? Face::of_b : Face::of_a;
+    const FaceSeparation& s = face == Face::of_b ? on_b : on_a;
+    FacePoints points;
+    const bool discs = a.faces() == 0 && b.faces() == 0;
+    if (!discs && (s.separation < k_no_direction || closest_face(pair, face, s, points))) {
+        normal = pair.normal(face, s.face);
+        return s.separation - radii;
+    }
+    int best_a = 0;
+    int best_b = 0;
+    nearest_vertices(a, b, best_a, best_b);
+    const Vec2 between = a.v(best_a) - b.v(best_b);
+    const double distance = between.norm();
+    normal = distance > 0.0 ? Vec2{between / distance} : Vec2{0.0, 1.0};
+    return distance - radii;
+}
 
 bool collide(const PlacedConvex& a, const PlacedConvex& b, const PairQuery& query, PairContact& contact) {
     const Pair pair{a, b, query};

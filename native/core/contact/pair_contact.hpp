@@ -58,4 +58,8 @@ struct PairQuery {
 /// Finds the contact of two pieces; false when there is none within the limit.
 bool collide(const PlacedConvex& a, const PlacedConvex& b, const PairQuery& query, PairContact& contact);
 
+/// Signed distance of two pieces and a direction (out of b) that separates them by it. Negative or a lower
+/// bound when the cores overlap or nearly touch.
+double separate(const PlacedConvex& a, const PlacedConvex& b, Vec2& normal);
+
 } // namespace haptics::contact
