@@ -49,9 +49,7 @@ struct Bench {
 void run_step(benchmark::State& state, const LinkageSpec& spec) {
     const auto bench = std::make_unique<Bench>(spec);
     for (auto _ : state) {
-        prepare_dynamics(bench->model, bench->data);
-        forward_dynamics(bench->model, bench->data, bench->force, bench->factor, bench->acceleration);
-        bench->update();
+        step_semi_implicit(bench->model, bench->data, bench->force, 1e-5, bench->factor, bench->acceleration);
     }
     benchmark::DoNotOptimize(bench->data.position.data());
 }

@@ -11,30 +11,37 @@
 /// four by 2 x 2 blocks.
 
 #include <haptics/core/dynamics/closed_chain.hpp>
+#include <haptics/core/dynamics/multiversion.hpp>
+#include <haptics/core/dynamics/sincos.hpp>
+
+#include <cmath>
 
 namespace haptics {
 namespace {
 
-/// phi'' of N bodies into `phi`.
+/// phi'' of N bodies into `phi`, from the cosines and sines of their angles.
 template <int N>
-inline void absolute_acceleration(const LinkageModel& model, const LinkageData& data, const double* force,
-                                  double* phi) {
+HAPTICS_ALWAYS_INLINE void absolute_acceleration(const LinkageModel& model, const Lanes& cosine,
+                                                 const Lanes& sine, const double* rate, const double* force,
+                                                 double* phi) {
     constexpr std::size_t size = N;
     const ChainModel& chain = model.chain;
-    double lx[size];
-    double ly[size];
-    double mx[size];
-    double my[size];
+    Lanes link_x;
+    Lanes link_y;
+    Lanes moment_x;
+    Lanes moment_y;
+    std::memcpy(&link_x, chain.link_x.data() + 1, sizeof(link_x));
+    std::memcpy(&link_y, chain.link_y.data() + 1, sizeof(link_y));
+    std::memcpy(&moment_x, chain.moment_x.data() + 1, sizeof(moment_x));
+    std::memcpy(&moment_y, chain.moment_y.data() + 1, sizeof(moment_y));
+    const Lanes lx = cosine * link_x - sine * link_y;
+    const Lanes ly = sine * link_x + cosine * link_y;
+    const Lanes mx = cosine * moment_x - sine * moment_y;
+    const Lanes my = sine * moment_x + cosine * moment_y;
     double square[size];
     double right[size];
     for (int i = 0; i < N; ++i) {
-        const double c = data.cosine[i + 1];
-        const double s = data.sine[i + 1];
-        lx[i] = c * chain.link_x[i + 1] - s * chain.link_y[i + 1];
-        ly[i] = s * chain.link_x[i + 1] + c * chain.link_y[i + 1];
-        mx[i] = c * chain.moment_x[i + 1] - s * chain.moment_y[i + 1];
-        my[i] = s * chain.moment_x[i + 1] + c * chain.moment_y[i + 1];
-        square[i] = data.rate[i + 1] * data.rate[i + 1];
+        square[i] = rate[i] * rate[i];
         right[i] = i + 1 < N ? force[i] - force[i + 1] : force[i];
     }
     if (model.has_gravity) {
@@ -97,35 +104,118 @@ inline void absolute_acceleration(const LinkageModel& model, const LinkageData& 
 }
 
 template <int N>
-void relative_acceleration(const LinkageModel& model, const LinkageData& data, const double* force,
-                           double* acceleration) {
+HAPTICS_ALWAYS_INLINE void accelerate(const LinkageModel& model, const LinkageData& data, const double* force,
+                                      double* acceleration) {
+    Lanes cosine;
+    Lanes sine;
+    std::memcpy(&cosine, data.cosine.data() + 1, sizeof(cosine));
+    std::memcpy(&sine, data.sine.data() + 1, sizeof(sine));
     double phi[static_cast<std::size_t>(N)];
-    absolute_acceleration<N>(model, data, force, phi);
+    absolute_acceleration<N>(model, cosine, sine, data.rate.data() + 1, force, phi);
     acceleration[0] = phi[0];
     for (int i = 1; i < N; ++i) {
         acceleration[i] = phi[i] - phi[i - 1];
     }
 }
 
+/// A whole semi-implicit step, kept in registers.
+template <int N>
+HAPTICS_ALWAYS_INLINE void advance(const LinkageModel& model, LinkageData& data, const double* force,
+                                   double dt, double* acceleration) {
+    double* q = data.position.data();
+    double* v = data.velocity.data();
+    double angle[4]{};
+    double rate[4]{};
+    bool in_range = true;
+    for (int i = 0; i < N; ++i) {
+        angle[i] = (i > 0 ? angle[i - 1] : 0.0) + (model.turn_offset[i + 1] + q[i]);
+        rate[i] = (i > 0 ? rate[i - 1] : 0.0) + v[i];
+        in_range &= std::fabs(angle[i]) < k_sincos_range;
+    }
+    const Lanes x = {angle[0], angle[1], angle[2], angle[3]};
+    Lanes sine;
+    Lanes cosine;
+    detail::sincos_in_range<Lanes, LaneBits>(x, sine, cosine);
+    if (!in_range) [[unlikely]] {
+        for (int i = 0; i < N; ++i) {
+            double s;
+            double c;
+            fast_sincos(angle[i], s, c);
+            sine[i] = s;
+            cosine[i] = c;
+        }
+    }
+    double phi[static_cast<std::size_t>(N)];
+    absolute_acceleration<N>(model, cosine, sine, rate, force, phi);
+    for (int i = 0; i < N; ++i) {
+        const double a = i > 0 ? phi[i] - phi[i - 1] : phi[i];
+        acceleration[i] = a;
+        v[i] += dt * a;
+        q[i] += dt * v[i];
+    }
+}
+
+HAPTICS_ALWAYS_INLINE void accelerate_any(const LinkageModel& model, const LinkageData& data,
+                                          const double* force, double* acceleration) {
+    switch (model.body_count) {
+    case 1:
+        return accelerate<1>(model, data, force, acceleration);
+    case 2:
+        return accelerate<2>(model, data, force, acceleration);
+    case 3:
+        return accelerate<3>(model, data, force, acceleration);
+    default:
+        return accelerate<4>(model, data, force, acceleration);
+    }
+}
+
+HAPTICS_ALWAYS_INLINE void advance_any(const LinkageModel& model, LinkageData& data, const double* force,
+                                       double dt, double* acceleration) {
+    switch (model.body_count) {
+    case 1:
+        return advance<1>(model, data, force, dt, acceleration);
+    case 2:
+        return advance<2>(model, data, force, dt, acceleration);
+    case 3:
+        return advance<3>(model, data, force, dt, acceleration);
+    default:
+        return advance<4>(model, data, force, dt, acceleration);
+    }
+}
+
+#if HAPTICS_MULTIVERSION
+HAPTICS_AVX2 void accelerate_avx2(const LinkageModel& model, const LinkageData& data, const double* force,
+                                  double* acceleration) {
+    accelerate_any(model, data, force, acceleration);
+}
+HAPTICS_AVX2 void advance_avx2(const LinkageModel& model, LinkageData& data, const double* force, double dt,
+                               double* acceleration) {
+    advance_any(model, data, force, dt, acceleration);
+}
+#endif
+
 } // namespace
 
 void closed_chain_acceleration(const LinkageModel& model, const LinkageData& data, const JointVector& force,
                                JointVector& acceleration) {
     acceleration.resize(model.freedoms);
-    switch (model.body_count) {
-    case 1:
-        relative_acceleration<1>(model, data, force.data(), acceleration.data());
-        break;
-    case 2:
-        relative_acceleration<2>(model, data, force.data(), acceleration.data());
-        break;
-    case 3:
-        relative_acceleration<3>(model, data, force.data(), acceleration.data());
-        break;
-    default:
-        relative_acceleration<4>(model, data, force.data(), acceleration.data());
-        break;
+#if HAPTICS_MULTIVERSION
+    if (k_has_avx2) {
+        return accelerate_avx2(model, data, force.data(), acceleration.data());
     }
+#endif
+    accelerate_any(model, data, force.data(), acceleration.data());
+}
+
+void closed_chain_step(const LinkageModel& model, LinkageData& data, const JointVector& force, double dt,
+                       JointVector& acceleration) {
+    acceleration.resize(model.freedoms);
+#if HAPTICS_MULTIVERSION
+    if (k_has_avx2) {
+        return advance_avx2(model, data, force.data(), dt, acceleration.data());
+    }
+#endif
+    advance_any(model, data, force.data(), dt, acceleration.data());
 }
 
 } // namespace haptics

@@ -39,4 +39,21 @@ void forward_dynamics(const LinkageModel& model, const LinkageData& data, const 
     }
 }
 
+void step_semi_implicit(const LinkageModel& model, LinkageData& data, const JointVector& force, double dt,
+                        ArticulatedFactor& workspace, JointVector& acceleration) {
+    if (model.kernel == DynamicsKernel::closed_chain) {
+        closed_chain_step(model, data, force, dt, acceleration);
+        return;
+    }
+    prepare_dynamics(model, data);
+    forward_dynamics(model, data, force, workspace, acceleration);
+    double* q = data.position.data();
+    double* v = data.velocity.data();
+    const double* a = acceleration.data();
+    for (int i = 0; i < model.freedoms; ++i) {
+        v[i] += dt * a[i];
+        q[i] += dt * v[i];
+    }
+}
+
 } // namespace haptics

@@ -1,55 +1,14 @@
 /// Poses and velocities of the bodies, from the base outwards.
 ///
-/// Planar angles add up: angle_s = angle_p + offset_s (+ q for a revolute joint), and so do the rates. With
+/// With
 /// R_p the parent's rotation, the body's origin is o_s = o_p + d, d = R_p r_s (+ q R_p a_s for a prismatic
 /// joint), its velocity v_s = v_p + w_p d' (+ q' R_p a_s), where d' is d turned by 90 degrees.
 /// Differentiating once more with zero joint accelerations gives the bias b_s = b_p - w_p^2 d (+ 2 w_p q'
 /// (R_p a_s)').
 
 #include <haptics/core/dynamics/kinematics.hpp>
-#include <haptics/core/dynamics/sincos.hpp>
 
 namespace haptics {
-namespace {
-
-/// Sines and cosines of four angles, with the slow path beyond the fast range.
-HAPTICS_ALWAYS_INLINE void store_sincos(const double* angle, double* sine, double* cosine) {
-    const Lanes x = {angle[0], angle[1], angle[2], angle[3]};
-    Lanes s;
-    Lanes c;
-    detail::sincos_in_range<Lanes, LaneBits>(x, s, c);
-    std::memcpy(sine, &s, sizeof(s));
-    std::memcpy(cosine, &c, sizeof(c));
-    const double largest = std::fmax(std::fmax(std::fabs(angle[0]), std::fabs(angle[1])),
-                                     std::fmax(std::fabs(angle[2]), std::fabs(angle[3])));
-    if (!(largest < k_sincos_range)) [[unlikely]] {
-        for (int lane = 0; lane < 4; ++lane) {
-            fast_sincos(angle[lane], sine[lane], cosine[lane]);
-        }
-    }
-}
-
-} // namespace
-
-void update_rotations(const LinkageModel& model, LinkageData& data) {
-    const double* q = data.position.data();
-    const double* v = data.velocity.data();
-    // the arrays are padded: groups of four may reach beyond the last body
-    for (int first = 1; first <= model.body_count; first += 4) {
-        double angle[4];
-        for (int lane = 0; lane < 4; ++lane) {
-            const int slot = first + lane;
-            const int parent = model.turn_parent[slot];
-            const int freedom = model.turn_freedom[slot];
-            const double gain = model.turn_gain[slot];
-            angle[lane] = data.angle[parent] + (model.turn_offset[slot] + gain * q[freedom]);
-            data.angle[slot] = angle[lane];
-            data.rate[slot] = data.rate[parent] + gain * v[freedom];
-        }
-        store_sincos(angle, data.sine.data() + first, data.cosine.data() + first);
-    }
-}
-
 void update_positions(const LinkageModel& model, LinkageData& data) {
     for (int slot = 1; slot <= model.body_count; ++slot) {
         const BodyModel& body = model.body[slot];

@@ -5,6 +5,7 @@
 /// center of mass, so that its block of the mass matrix is diagonal.
 
 #include <haptics/core/dynamics/linkage_model.hpp>
+#include <haptics/core/dynamics/sincos.hpp>
 #include <haptics/core/dynamics/split_chain.hpp>
 
 #include <cmath>
@@ -38,8 +39,7 @@ void place_links(const LinkageSpec& spec, LinkageModel& model) {
             link.slot = parent.slot;
             link.origin = origin;
             link.angle = angle;
-            link.cosine = std::cos(angle);
-            link.sine = std::sin(angle);
+            fast_sincos(angle, link.sine, link.cosine);
             continue;
         }
         const int slot = ++model.body_count;
@@ -48,7 +48,7 @@ void place_links(const LinkageSpec& spec, LinkageModel& model) {
         body.parent = parent.slot;
         body.freedom = model.freedoms;
         body.origin = origin;
-        body.axis = {std::cos(angle), std::sin(angle)};
+        fast_sincos(angle, body.axis.y(), body.axis.x());
         model.turn_parent[slot] = parent.slot;
         model.turn_offset[slot] = angle;
         if (is_base) {

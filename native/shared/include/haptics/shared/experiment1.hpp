@@ -23,6 +23,7 @@ struct Experiment1Options {
     double encoder{10e-6};
     /// Multiplies the default coupling stiffness; damping grows with its root.
     double gain{1.0};
+    int velocity_window{4};
     /// Distance from tool to wall at the start, m.
     double distance{0.02};
 };
@@ -45,6 +46,7 @@ struct Experiment1 {
         model.settings.integrator = o.integrator;
         SessionSettings s;
         s.step = 1.0 / o.rate_hz;
+        s.velocity_window = o.velocity_window;
         s.coupling = o.coupling;
         s.device_delay = (o.delay_steps - 1) * s.step;
         s.reading_error = Vec3(0.5 * o.encoder, 0.5 * o.encoder, 0.5e-4);

@@ -101,8 +101,11 @@ inline LinkageSpec random_linkage(Random& random, const RandomLinkage& kind) {
     spec.base = kind.base;
     spec.gravity = {random.uniform(-3.0, 3.0), random.uniform(-10.0, 3.0)};
     for (int i = 0; i < kind.links; ++i) {
-        LinkSpec link = rod(i == 0 ? -1 : (kind.serial ? i - 1 : random.integer(0, i - 1)),
-                            random.uniform(0.05, 0.15), random.uniform(0.05, 0.3));
+        // one draw a statement: the order of arguments is the compiler's choice
+        const int parent = i == 0 ? -1 : (kind.serial ? i - 1 : random.integer(0, i - 1));
+        const double length = random.uniform(0.05, 0.15);
+        const double mass = random.uniform(0.05, 0.3);
+        LinkSpec link = rod(parent, length, mass);
         link.center = {random.uniform(0.0, 0.1), random.uniform(-0.03, 0.03)};
         if (i > 0) {
             link.joint.frame = {random.uniform(0.05, 0.15), random.uniform(-0.03, 0.03),
