@@ -5,9 +5,10 @@
 TEST_CASE("steal is the eighth figure of the first line, the total leaves the guests out") {
     const auto times =
         haptics::parse_processor_times("cpu  10 20 30 40 50 60 70 80 5 6\ncpu0 1 2 3 4 5 6 7 8 0 0\n");
-    REQUIRE(times.has_value());
-    CHECK(times->stolen == 80);
-    CHECK(times->total == 360);
+    CHECK(times.has_value());
+    const auto read = times.value_or(haptics::ProcessorTimes{});
+    CHECK(read.stolen == 80);
+    CHECK(read.total == 360);
 }
 
 TEST_CASE("text that is no processor line gives nothing") {
@@ -22,8 +23,7 @@ TEST_CASE("this machine's steal is a share") {
     if (!steal.begin()) {
         return;
     }
-    const auto fraction = steal.fraction();
-    REQUIRE(fraction.has_value());
-    CHECK(*fraction >= 0.0);
-    CHECK(*fraction <= 1.0);
+    const double fraction = steal.fraction().value_or(-1.0);
+    CHECK(fraction >= 0.0);
+    CHECK(fraction <= 1.0);
 }

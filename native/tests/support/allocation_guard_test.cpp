@@ -56,7 +56,8 @@ TEST_CASE("the allocation guard counts the malloc family") {
     g_sink = std::malloc(8);
     std::free(g_sink);
     g_sink = std::calloc(2, 8);
-    g_sink = std::realloc(g_sink, 64);
+    void* const smaller = g_sink;
+    g_sink = std::realloc(smaller, 64);
     std::free(g_sink);
     g_sink = std::aligned_alloc(64, 64);
     std::free(g_sink);

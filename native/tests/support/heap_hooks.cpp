@@ -48,6 +48,7 @@ HeapListener set_heap_listener(HeapListener listener) noexcept {
 using haptics::testing::count_allocation;
 using haptics::testing::count_deallocation;
 
+// NOLINTBEGIN(readability-inconsistent-declaration-parameter-name): the C library names them __like_this
 #if HAPTICS_TESTS_REPLACE_MALLOC
 
 extern "C" {
@@ -99,6 +100,8 @@ void free(void* block) noexcept {
 }
 
 #endif
+// NOLINTEND(readability-inconsistent-declaration-parameter-name)
+
 #if HAPTICS_TESTS_REPLACE_NEW
 
 namespace {

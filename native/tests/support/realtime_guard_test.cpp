@@ -79,7 +79,8 @@ TEST_SUITE("the real-time guard" * doctest::skip(!RealtimeGuard::traps())) {
         });
         g_sink = nullptr;
         check_trapped(Violation::allocation, "realloc", [] {
-            g_sink = std::realloc(g_sink, 8);
+            void* const nothing = g_sink;
+            g_sink = std::realloc(nothing, 8);
             std::free(g_sink);
             g_sink = nullptr;
         });
@@ -176,7 +177,9 @@ TEST_SUITE("the real-time guard" * doctest::skip(!RealtimeGuard::traps())) {
         });
         RealtimeGuard guard;
         guard.begin();
-        { const std::ifstream stream("/dev/null"); }
+        {
+            const std::ifstream stream("/dev/null");
+        }
         guard.end();
         CHECK(guard.count(Violation::file) > 0);
     }

@@ -75,6 +75,7 @@ class Original {
 // NOLINTEND(bugprone-macro-parentheses)
 
 // clang-format off
+// NOLINTBEGIN(readability-inconsistent-declaration-parameter-name): the C library names them __like_this
 #pragma GCC visibility push(default)
 extern "C" {
 
@@ -200,5 +201,6 @@ long syscall(long number, ...) noexcept {
 }
 }
 #pragma GCC visibility pop
+// NOLINTEND(readability-inconsistent-declaration-parameter-name)
 
 #endif
