@@ -1,8 +1,10 @@
 /// Broad phase. In a step h a point of body a at distance up to R_a from its reference point comes nearer to
 /// b by at most
 ///     reach = h (|v_a - v_b| + |w_a| R_a + |w_b| R_b),
-/// so only pairs whose discs, and pieces whose box and disc, are within margin + reach can touch. A body that
-/// was pressed deep into matter is looked for that much farther: it still feels the face it came through.
+/// so only pairs whose discs, and pieces whose box and disc, are within margin + reach can touch. The first
+/// test of a pair takes each body's own share of that (with |v_a| + |v_b| for |v_a - v_b|), which is computed
+/// once per body and step. A body that was pressed deep into matter is looked for that much farther: it still
+/// feels the face it came through.
 
 #include <haptics/core/contact/detection.hpp>
 
@@ -26,6 +28,21 @@ struct Actor {
     double radius{0.0};
     std::int32_t index{0};
     bool tool{false};
+};
+
+/// Disc about a body's reference point that it cannot leave in the coming step, m.
+struct Disc {
+    double x;
+    double y;
+    double radius;
+    bool movable;
+
+    [[nodiscard]] bool apart(const Disc& other) const {
+        const double dx = x - other.x;
+        const double dy = y - other.y;
+        const double reach = radius + other.radius;
+        return dx * dx + dy * dy > reach * reach;
+    }
 };
 
 struct Search {
@@ -106,21 +123,27 @@ void collide_pieces(const Search& search, const Actor& a, const Piece& piece_a, 
     search.drafts.add(draft);
 }
 
+/// How far a body's rim moves by its turn, m/s; an unbounded body that does not turn has none.
+double rim_speed(const Body& body, double radius) {
+    const double spin = std::abs(body.velocity.z());
+    return spin > 0.0 ? spin * radius : 0.0;
+}
+
+Disc disc_of(const Search& search, const Body& body, double radius, bool tool) {
+    const double speed = std::abs(body.velocity.x()) + std::abs(body.velocity.y()) + rim_speed(body, radius);
+    double grown = radius + 0.5 * search.settings.margin + search.settings.step * speed;
+    if (search.memory.count > 0 && (tool || body.kind == BodyKind::movable))
+        grown += last_depth(search.memory, body.id, tool);
+    return {body.pose.x(), body.pose.y(), grown, body.kind == BodyKind::movable};
+}
+
 void collide_bodies(const Search& search, const Actor& a, const Actor& b) {
-    const Vec2 between = b.body->pose.head<2>() - a.body->pose.head<2>();
     const Vec2 closing = b.body->velocity.head<2>() - a.body->velocity.head<2>();
-    // an unbounded body that does not move turns by nothing
-    const auto rim = [](const Actor& actor) {
-        const double spin = std::abs(actor.body->velocity.z());
-        return spin > 0.0 ? spin * actor.radius : 0.0;
-    };
-    const double reach = search.settings.step * (closing.norm() + rim(a) + rim(b));
+    const double reach =
+        search.settings.step * (closing.norm() + rim_speed(*a.body, a.radius) + rim_speed(*b.body, b.radius));
     double limit = search.settings.margin + reach;
     if (search.memory.count > 0)
         limit += last_depth(search.memory, a.body->id, a.tool);
-    const double apart = a.radius + b.radius + limit;
-    if (between.squaredNorm() > apart * apart)
-        return;
     const Transform at_a(a.body->pose);
     const Transform at_b(b.body->pose);
     for (std::int32_t i = 0; i < a.body->piece_count; ++i) {
@@ -153,16 +176,18 @@ Actor actor(const BodySet& set, const BodyBounds& bounds, std::int32_t i, std::i
 
 /// Movable neighbors against the others; of two movable ones the smaller id is a.
 void collide_neighbors(const Search& search, const BodySet& neighbors, const BodyBounds& bounds,
-                       std::int32_t first_index) {
+                       const Disc* disc, std::int32_t first_index) {
     for (std::int32_t i = 0; i < neighbors.body_count; ++i) {
-        if (neighbors.body[static_cast<std::size_t>(i)].kind != BodyKind::movable)
+        if (!disc[i].movable)
             continue;
-        const Actor one = actor(neighbors, bounds, i, first_index, false);
         for (std::int32_t k = 0; k < neighbors.body_count; ++k) {
-            const Body& other = neighbors.body[static_cast<std::size_t>(k)];
-            if (k == i || (other.kind == BodyKind::movable && other.id <= one.body->id))
+            if ((disc[k].movable && k <= i) || disc[i].apart(disc[k]))
                 continue;
-            collide_bodies(search, one, actor(neighbors, bounds, k, first_index, false));
+            const Body& one = neighbors.body[static_cast<std::size_t>(i)];
+            const Body& other = neighbors.body[static_cast<std::size_t>(k)];
+            const bool first = other.kind != BodyKind::movable || one.id < other.id;
+            collide_bodies(search, actor(neighbors, bounds, first ? i : k, first_index, false),
+                           actor(neighbors, bounds, first ? k : i, first_index, false));
         }
     }
 }
@@ -194,12 +219,21 @@ void detect_patches(const BodySet& tool, const BodyBounds& tool_bounds, const Bo
     const Search search{settings, memory, drafts};
 
     // find and merge
-    for (std::int32_t i = 0; i < tool.body_count; ++i) {
-        const Actor link = actor(tool, tool_bounds, i, 0, true);
-        for (std::int32_t k = 0; k < neighbors.body_count; ++k)
-            collide_bodies(search, link, actor(neighbors, neighbor_bounds, k, tool.body_count, false));
+    std::array<Disc, k_max_bodies> disc; // written for the bodies there are
+    for (std::int32_t k = 0; k < neighbors.body_count; ++k) {
+        const auto index = static_cast<std::size_t>(k);
+        disc[index] = disc_of(search, neighbors.body[index], neighbor_bounds.radius[index], false);
     }
-    collide_neighbors(search, neighbors, neighbor_bounds, tool.body_count);
+    for (std::int32_t i = 0; i < tool.body_count; ++i) {
+        const auto index = static_cast<std::size_t>(i);
+        const Disc own = disc_of(search, tool.body[index], tool_bounds.radius[index], true);
+        for (std::int32_t k = 0; k < neighbors.body_count; ++k) {
+            if (!own.apart(disc[static_cast<std::size_t>(k)]))
+                collide_bodies(search, actor(tool, tool_bounds, i, 0, true),
+                               actor(neighbors, neighbor_bounds, k, tool.body_count, false));
+        }
+    }
+    collide_neighbors(search, neighbors, neighbor_bounds, disc.data(), tool.body_count);
 
     // remember and order
     sort(drafts);

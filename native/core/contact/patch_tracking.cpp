@@ -64,18 +64,67 @@ double distance(const Patch& p, const Patch& q) {
     return nearest;
 }
 
+bool may_go_on(const Remembered& old, const Draft& draft) {
+    return same_pair(old.patch->side, draft.patch.side) && old.normal.dot(draft.patch.normal) >= k_same_way;
+}
+
 double mismatch(const Remembered& old, const Draft& draft) {
-    if (!same_pair(old.patch->side, draft.patch.side))
+    if (!may_go_on(old, draft))
         return std::numeric_limits<double>::infinity();
-    const double way = old.normal.dot(draft.patch.normal);
-    if (way < k_same_way)
-        return std::numeric_limits<double>::infinity();
-    if (old.patch->feature_a == draft.patch.feature_a && old.patch->feature_b == draft.patch.feature_b)
-        return -1.0;
     const double apart = distance(*old.patch, draft.patch);
     if (apart > k_jump + draft.reach)
         return std::numeric_limits<double>::infinity();
     return apart + k_turn_length * (old.normal - draft.patch.normal).norm();
+}
+
+void go_on(const Memory& memory, int old, Draft& draft, std::array<bool, k_max_patches>& used) {
+    used[static_cast<std::size_t>(old)] = true;
+    draft.previous = old;
+    draft.patch.memory = memory.patch[static_cast<std::size_t>(old)].patch->memory;
+}
+
+/// Same features first.
+int match_features(const Memory& memory, DraftList& drafts, std::array<bool, k_max_patches>& used) {
+    int matched = 0;
+    for (int k = 0; k < drafts.count; ++k) {
+        Draft& draft = drafts[k];
+        for (int i = 0; i < memory.count && draft.previous < 0; ++i) {
+            const Remembered& old = memory.patch[static_cast<std::size_t>(i)];
+            if (!used[static_cast<std::size_t>(i)] && old.patch->feature_a == draft.patch.feature_a &&
+                old.patch->feature_b == draft.patch.feature_b && may_go_on(old, draft)) {
+                go_on(memory, i, draft, used);
+                ++matched;
+            }
+        }
+    }
+    return matched;
+}
+
+/// Then the nearest of the others, best pairs first.
+void match_nearest(const Memory& memory, DraftList& drafts, int rounds,
+                   std::array<bool, k_max_patches>& used) {
+    for (int round = 0; round < rounds; ++round) {
+        double best = std::numeric_limits<double>::infinity();
+        int best_old = -1;
+        int best_new = -1;
+        for (int i = 0; i < memory.count; ++i) {
+            if (used[static_cast<std::size_t>(i)])
+                continue;
+            for (int k = 0; k < drafts.count; ++k) {
+                if (drafts[k].previous >= 0)
+                    continue;
+                const double m = mismatch(memory.patch[static_cast<std::size_t>(i)], drafts[k]);
+                if (m < best) {
+                    best = m;
+                    best_old = i;
+                    best_new = k;
+                }
+            }
+        }
+        if (best_old < 0)
+            return;
+        go_on(memory, best_old, drafts[best_new], used);
+    }
 }
 
 } // namespace
@@ -140,34 +189,9 @@ double last_depth(const Memory& memory, std::uint64_t id_a, bool tool_a) {
 }
 
 void carry_over(const Memory& memory, DraftList& drafts) {
-    // match, best pairs first
     std::array<bool, k_max_patches> used{};
-    for (int round = 0; round < drafts.count; ++round) {
-        double best = std::numeric_limits<double>::infinity();
-        int best_old = -1;
-        int best_new = -1;
-        for (int i = 0; i < memory.count; ++i) {
-            if (used[static_cast<std::size_t>(i)])
-                continue;
-            for (int k = 0; k < drafts.count; ++k) {
-                const Draft& draft = drafts[k];
-                if (draft.previous >= 0)
-                    continue;
-                const double m = mismatch(memory.patch[static_cast<std::size_t>(i)], draft);
-                if (m < best) {
-                    best = m;
-                    best_old = i;
-                    best_new = k;
-                }
-            }
-        }
-        if (best_old < 0)
-            break;
-        used[static_cast<std::size_t>(best_old)] = true;
-        Draft& draft = drafts[best_new];
-        draft.previous = best_old;
-        draft.patch.memory = memory.patch[static_cast<std::size_t>(best_old)].patch->memory;
-    }
+    const int matched = match_features(memory, drafts, used);
+    match_nearest(memory, drafts, std::min(drafts.count, memory.count) - matched, used);
 
     // drop what cannot be
     for (int k = drafts.count - 1; k >= 0; --k) {
