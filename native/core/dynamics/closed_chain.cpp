@@ -16,14 +16,20 @@
 
 #include <cmath>
 
+// Packing these scalars into vectors sends them through memory and costs a third of the time.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("no-tree-vectorize")
+#endif
+
 namespace haptics {
 namespace {
 
-/// phi'' of N bodies into `phi`, from the cosines and sines of their angles.
+/// q'' of N bodies into `acceleration`, from the cosines and sines of their absolute angles. The differences
+/// of phi'' are taken before the division, which they need not wait for.
 template <int N>
-HAPTICS_ALWAYS_INLINE void absolute_acceleration(const LinkageModel& model, const Lanes& cosine,
-                                                 const Lanes& sine, const double* rate, const double* force,
-                                                 double* phi) {
+HAPTICS_ALWAYS_INLINE void chain_acceleration(const LinkageModel& model, const Lanes& cosine,
+                                              const Lanes& sine, const double* rate, const double* force,
+                                              double* acceleration) {
     constexpr std::size_t size = N;
     const ChainModel& chain = model.chain;
     Lanes link_x;
@@ -66,11 +72,13 @@ HAPTICS_ALWAYS_INLINE void absolute_acceleration(const LinkageModel& model, cons
         }
     }
     if constexpr (N == 1) {
-        phi[0] = right[0] / d[0][0];
+        acceleration[0] = right[0] / d[0][0];
     } else if constexpr (N == 2) {
         const double inverse = 1.0 / (d[0][0] * d[1][1] - d[0][1] * d[0][1]);
-        phi[0] = (d[1][1] * right[0] - d[0][1] * right[1]) * inverse;
-        phi[1] = (d[0][0] * right[1] - d[0][1] * right[0]) * inverse;
+        const double first = d[1][1] * right[0] - d[0][1] * right[1];
+        const double second = d[0][0] * right[1] - d[0][1] * right[0];
+        acceleration[0] = first * inverse;
+        acceleration[1] = (second - first) * inverse;
     } else if constexpr (N == 3) {
         const double c00 = d[1][1] * d[2][2] - d[1][2] * d[1][2];
         const double c01 = d[0][2] * d[1][2] - d[0][1] * d[2][2];
@@ -79,9 +87,12 @@ HAPTICS_ALWAYS_INLINE void absolute_acceleration(const LinkageModel& model, cons
         const double c12 = d[0][1] * d[0][2] - d[0][0] * d[1][2];
         const double c22 = d[0][0] * d[1][1] - d[0][1] * d[0][1];
         const double inverse = 1.0 / (d[0][0] * c00 + (d[0][1] * c01 + d[0][2] * c02));
-        phi[0] = (c00 * right[0] + (c01 * right[1] + c02 * right[2])) * inverse;
-        phi[1] = (c01 * right[0] + (c11 * right[1] + c12 * right[2])) * inverse;
-        phi[2] = (c02 * right[0] + (c12 * right[1] + c22 * right[2])) * inverse;
+        const double first = c00 * right[0] + (c01 * right[1] + c02 * right[2]);
+        const double second = c01 * right[0] + (c11 * right[1] + c12 * right[2]);
+        const double third = c02 * right[0] + (c12 * right[1] + c22 * right[2]);
+        acceleration[0] = first * inverse;
+        acceleration[1] = (second - first) * inverse;
+        acceleration[2] = (third - second) * inverse;
     } else {
         static_assert(N == 4);
         // A = first two, B = last two, E between them: S = B - E^T A^-1 E
@@ -96,10 +107,14 @@ HAPTICS_ALWAYS_INLINE void absolute_acceleration(const LinkageModel& model, cons
         const double r2 = right[2] - (f00 * right[0] + f10 * right[1]);
         const double r3 = right[3] - (f01 * right[0] + f11 * right[1]);
         const double s = 1.0 / (s00 * s11 - s01 * s01);
-        phi[2] = (s11 * r2 - s01 * r3) * s;
-        phi[3] = (s00 * r3 - s01 * r2) * s;
-        phi[0] = (d[1][1] * right[0] - d[0][1] * right[1]) * a - (f00 * phi[2] + f01 * phi[3]);
-        phi[1] = (d[0][0] * right[1] - d[0][1] * right[0]) * a - (f10 * phi[2] + f11 * phi[3]);
+        const double third = (s11 * r2 - s01 * r3) * s;
+        const double fourth = (s00 * r3 - s01 * r2) * s;
+        const double first = (d[1][1] * right[0] - d[0][1] * right[1]) * a - (f00 * third + f01 * fourth);
+        const double second = (d[0][0] * right[1] - d[0][1] * right[0]) * a - (f10 * third + f11 * fourth);
+        acceleration[0] = first;
+        acceleration[1] = second - first;
+        acceleration[2] = third - second;
+        acceleration[3] = fourth - third;
     }
 }
 
@@ -110,12 +125,7 @@ HAPTICS_ALWAYS_INLINE void accelerate(const LinkageModel& model, const LinkageDa
     Lanes sine;
     std::memcpy(&cosine, data.cosine.data() + 1, sizeof(cosine));
     std::memcpy(&sine, data.sine.data() + 1, sizeof(sine));
-    double phi[static_cast<std::size_t>(N)];
-    absolute_acceleration<N>(model, cosine, sine, data.rate.data() + 1, force, phi);
-    acceleration[0] = phi[0];
-    for (int i = 1; i < N; ++i) {
-        acceleration[i] = phi[i] - phi[i - 1];
-    }
+    chain_acceleration<N>(model, cosine, sine, data.rate.data() + 1, force, acceleration);
 }
 
 /// A whole semi-implicit step, kept in registers.
@@ -128,8 +138,9 @@ HAPTICS_ALWAYS_INLINE void advance(const LinkageModel& model, LinkageData& data,
     double rate[4]{};
     bool in_range = true;
     for (int i = 0; i < N; ++i) {
-        angle[i] = (i > 0 ? angle[i - 1] : 0.0) + (model.turn_offset[i + 1] + q[i]);
-        rate[i] = (i > 0 ? rate[i - 1] : 0.0) + v[i];
+        const double turn = model.turn_offset[i + 1] + q[i];
+        angle[i] = i > 0 ? angle[i - 1] + turn : turn;
+        rate[i] = i > 0 ? rate[i - 1] + v[i] : v[i];
         in_range &= std::fabs(angle[i]) < k_sincos_range;
     }
     const Lanes x = {angle[0], angle[1], angle[2], angle[3]};
@@ -145,12 +156,11 @@ HAPTICS_ALWAYS_INLINE void advance(const LinkageModel& model, LinkageData& data,
             cosine[i] = c;
         }
     }
-    double phi[static_cast<std::size_t>(N)];
-    absolute_acceleration<N>(model, cosine, sine, rate, force, phi);
+    double a[static_cast<std::size_t>(N)];
+    chain_acceleration<N>(model, cosine, sine, rate, force, a);
     for (int i = 0; i < N; ++i) {
-        const double a = i > 0 ? phi[i] - phi[i - 1] : phi[i];
-        acceleration[i] = a;
-        v[i] += dt * a;
+        acceleration[i] = a[i];
+        v[i] += dt * a[i];
         q[i] += dt * v[i];
     }
 }

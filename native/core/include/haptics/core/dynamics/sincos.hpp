@@ -34,22 +34,22 @@ HAPTICS_ALWAYS_INLINE void sincos_in_range(const Number& x, Number& sine, Number
     const Number k = shifted - magic;
     Bits quadrant;
     std::memcpy(&quadrant, &shifted, sizeof(quadrant));
-    const Number r = ((x - k * 1.57079632673412561417e+00) - k * 6.07710050630396597660e-11) -
-                     k * 2.02226624879595063154e-21;
+    const Number r = (x - k * 1.57079632673412561417e+00) -
+                     (k * 6.07710050630396597660e-11 + k * 2.02226624879595063154e-21);
+    // polynomials in pairs (Estrin): shorter chains than Horner's
     const Number z = r * r;
     const Number z2 = z * z;
-    // Estrin's order: shorter chains than Horner's
-    const Number sine_low = 8.33333333332248946124e-03 + z * -1.98412698298579493134e-04;
-    const Number sine_high =
-        (2.75573137070700676789e-06 + z * -2.50507602534068634195e-08) + z2 * 1.58969099521155010221e-10;
-    const Number s = r + (r * z) * (-1.66666666666666324348e-01 + z * (sine_low + z2 * sine_high));
-    const Number cosine_low = 4.16666666666666019037e-02 + z * -1.38888888888741095749e-03;
-    const Number cosine_mid = 2.48015872894767294178e-05 + z * -2.75573143513906633035e-07;
-    const Number cosine_high = 2.08757232129817482790e-09 + z * -1.13596475577881948265e-11;
+    const Number z4 = z2 * z2;
+    const Number s0 = -1.66666666666666324348e-01 + z * 8.33333333332248946124e-03;
+    const Number s1 = -1.98412698298579493134e-04 + z * 2.75573137070700676789e-06;
+    const Number s2 = -2.50507602534068634195e-08 + z * 1.58969099521155010221e-10;
+    const Number s = r + (r * z) * ((s0 + z2 * s1) + z4 * s2);
+    const Number c0 = 4.16666666666666019037e-02 + z * -1.38888888888741095749e-03;
+    const Number c1 = 2.48015872894767294178e-05 + z * -2.75573143513906633035e-07;
+    const Number c2 = 2.08757232129817482790e-09 + z * -1.13596475577881948265e-11;
     const Number half = z * 0.5;
     const Number one_less = 1.0 - half;
-    const Number c =
-        one_less + (((1.0 - one_less) - half) + z2 * (cosine_low + z2 * (cosine_mid + z2 * cosine_high)));
+    const Number c = one_less + (((1.0 - one_less) - half) + z2 * ((c0 + z2 * c1) + z4 * c2));
     Bits s_bits;
     Bits c_bits;
     std::memcpy(&s_bits, &s, sizeof(s_bits));
