@@ -2,9 +2,12 @@
 //
 // Worst case for the spring between handle and proxy is a proxy that stands still (a hard wall): the device's mass m alone moves on K, B
 // through a loop that samples (the force is held for a step: T/2 on average), computes (one step: T) and takes velocity from
-// differences (T/2): tau = 2 T plus the device's own delay. With L(s) = (B s + K) e^(-s tau) / (m s^2), K = m w^2 and B = 2 z m w, the gain crosses one at
-// w_c = w sqrt(2 z^2 + sqrt(4 z^4 + 1)), that is 1.55 w for z = 0.7, where the phase margin is atan(2 z w_c / w) - w_c tau = 65 deg - 1.55 w tau.
-// Asking for 39 deg leaves w tau = 0.29: w = 0.29 / tau, i.e. w T = 0.145 without delay. For 0.3 kg at 500 Hz this is 1577 N/m and 30.5 N s/m.
+// differences over n samples (n T/2): tau = (3 + n) T/2 plus the device's own delay. With L(s) = (B s + K) e^(-s tau) / (m s^2), K = m w^2 and
+// B = 2 z m w, the gain crosses one at w_c = w sqrt(2 z^2 + sqrt(4 z^4 + 1)), that is 1.55 w for z = 0.7, where the phase margin is
+// atan(2 z w_c / w) - w_c tau = 65 deg - 1.55 w tau. Asking for 39 deg leaves w tau = 0.29.
+// With four channels the wall's answer to the coupling comes back a second time, fed forward with the weight a = S J_h D^-1 J_h^T (between 0 for
+// a heavy and 1 for a light proxy), so the loop's gain is 1 + a times that of the spring: K = m (0.29 / tau)^2 / (1 + a), and B likewise.
+// For 0.3 kg on both sides at 500 Hz and n = 2 this is 673 N/m and 16.2 N s/m.
 //
 // S form. Device M_d a = F_h + L and proxy D q'' = tau - J_h^T L share the grip, J_h q'' = a, so L = S (J_h D^-1 tau - M_d^-1 F_h) with
 // S = (J_h D^-1 J_h^T + M_d^-1)^-1. The device is fed forward S J_h D^-1 tau, the proxy S J_h D^-1 J_h^T F_h (note 1 - S M_d^-1 =
@@ -16,19 +19,24 @@
 
 namespace haptics {
 
-CouplingGains default_gains(const Mat3& device_mass, double step, double delay) {
+CouplingGains default_gains(const Mat3& device_mass, const Mat3& mobility, double step, double delay, int velocity_window) {
     constexpr double k_frequency = 0.29; // w tau
     constexpr double k_damping_ratio = 0.7;
-    const double w = k_frequency / (2.0 * step + std::max(delay, 0.0));
-    CouplingGains gains;
+    const double w = k_frequency / (0.5 * (3.0 + velocity_window) * step + std::max(delay, 0.0));
     // the lightest direction bounds both axes, so that the coupling feels the same all around
     const double xx = device_mass(0, 0);
     const double yy = device_mass(1, 1);
     const double xy = device_mass(0, 1);
     const double lightest = 0.5 * (xx + yy) - std::sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy);
+    const double most_mobile = std::max(mobility(0, 0), mobility(1, 1));
+    // a = m_d / (m_d + m_p), written with 1/m_p so that a proxy that cannot move gives 0
+    const auto share = [](double mass, double inverse) { return mass * inverse / (1.0 + mass * inverse); };
     const Vec3 mass(lightest, lightest, device_mass(2, 2));
-    gains.stiffness = w * w * mass;
-    gains.damping = 2.0 * k_damping_ratio * w * mass;
+    const double translation = 1.0 + share(lightest, most_mobile);
+    const Vec3 loop_gain(translation, translation, 1.0 + share(device_mass(2, 2), mobility(2, 2)));
+    CouplingGains gains;
+    gains.stiffness = w * w * mass.cwiseQuotient(loop_gain);
+    gains.damping = 2.0 * k_damping_ratio * w * mass.cwiseQuotient(loop_gain);
     return gains;
 }
 

@@ -44,6 +44,7 @@ std::vector<FigureError> validate(const SessionSettings& s) {
         check.range("coupling.damping", s.gains.damping(i), 0.0, 1e9, "N s/m", "0 chooses it from device mass and rate.");
         check.range("reading_error", s.reading_error(i), 0.0, 0.1, "m", "Half an encoder step.");
     }
+    check.range("velocity_window", static_cast<double>(s.velocity_window), 1.0, 63.0, "samples", "2 is the default.");
     check.range("device_delay", s.device_delay, 0.0, 1.0, "s", "Most devices add less than 0.001 s.");
     return check.take();
 }
@@ -55,7 +56,7 @@ Session::Session(const SessionSettings& settings, const Model& model, const Outp
     , data_(std::make_unique<Data>())
     , gate_(gate)
     , device_(device)
-    , velocity_(settings.reading_error) {
+    , velocity_(settings.reading_error, settings.velocity_window) {
     reset(*model_, *data_, start);
     arm_wanted_ = settings.arm_at_start;
     mobility_ = grip_mobility(*model_, *data_);
@@ -63,7 +64,7 @@ Session::Session(const SessionSettings& settings, const Model& model, const Outp
     device_mass_ = settings_.mapping.mass_to_scene(device_.handle_mass(reading_.pose));
     gains_ = settings_.gains;
     if (gains_.stiffness.isZero(0.0) && gains_.damping.isZero(0.0))
-        gains_ = default_gains(device_mass_, settings_.step, settings_.device_delay);
+        gains_ = default_gains(device_mass_, loop_mobility(), settings_.step, settings_.device_delay, settings_.velocity_window);
     hold(settings_.hold_at_start);
     report_.grip = grip_pose(model_->tool.grip, data_->pose);
     report_.proxy = data_->pose;
@@ -89,6 +90,14 @@ void Session::disarm() {
 void Session::shut_off() {
     disarm();
     device_.write(Wrench::Zero());
+}
+
+Mat3 Session::loop_mobility() const {
+    return settings_.coupling == Coupling::four_channel ? mobility_ : Mat3(Mat3::Zero());
+}
+
+double Session::stored_energy() const {
+    return output_.stored_energy + (held_ ? spring_energy(gains_.stiffness, output_.coupling) : 0.0);
 }
 
 void Session::read_device() {
@@ -153,8 +162,7 @@ Wrench Session::command() {
 void Session::step() {
     read_device();
     if (fresh_) {
-        coupling_energy_ = spring_energy(gains_.stiffness, output_.coupling);
-        ledger_.book(reading_.pose, coupling_energy_);
+        ledger_.book(reading_.pose, stored_energy(), output_.source_work);
     }
     device_mass_ = settings_.mapping.mass_to_scene(device_.handle_mass(reading_.pose));
     run_model();
@@ -164,7 +172,7 @@ void Session::step() {
         arm_result_ = gate_.arm(output_.contacts > 0);
         if (arm_result_ == ArmResult::armed) {
             hold(held_); // the coupling starts without tension
-            ledger_.reset(reading_.pose);
+            ledger_.reset(reading_.pose, stored_energy());
         }
     }
     const GateOutput gated = gate_.apply(wanted, reading_.pose, device_twist, settings_.step);

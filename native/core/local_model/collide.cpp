@@ -92,6 +92,17 @@ bool collide(const Model& model, Data& data, StepOutput& output) {
             t.impulse += std::abs(normal);
         }
         p.was_apart = false;
+        if (t.movable >= 0 || t.drive != 0.0 || p.drive != 0.0) {
+            // work of the other side: impulse times its mean velocity, v_other = v_tool - gap rate
+            const auto other = [&](const auto& row, double drive) {
+                const Vec3 on_tool = row.template head<3>().transpose();
+                const double before_rate = row.dot(data.collision.velocity) - drive;
+                const double after_rate = row.dot(s.velocity) - drive;
+                return 0.5 * (on_tool.dot(before) - before_rate + on_tool.dot(Vec3(s.velocity.head<3>())) - after_rate);
+            };
+            output.source_work += normal * other(s.normal_rows.row(i), p.drive) +
+                                  data.solution.tangent_impulse(c) * other(s.tangent_rows.row(p.patch), t.drive);
+        }
         if (t.movable < 0)
             continue;
         MovableState& m = data.movable[static_cast<std::size_t>(t.movable)];

@@ -29,9 +29,30 @@ void add_event(StepOutput& output, ContactEventKind kind, std::uint64_t body, do
     ContactEvent& e = output.event[static_cast<std::size_t>(output.event_count++)];
     e = ContactEvent{kind, body, time, {0.0, 0.0}, {0.0, 1.0}, impulse};
     if (patch != nullptr) {
-        e.position = {patch->point[0].position.x(), patch->point[0].position.y()};
+        Vec2 middle{0.0, 0.0};
+        for (int k = 0; k < patch->point_count; ++k)
+            middle += patch->point[static_cast<std::size_t>(k)].weight * patch->point[static_cast<std::size_t>(k)].position;
+        e.position = {middle.x(), middle.y()};
         e.normal = {patch->normal.x(), patch->normal.y()};
     }
+}
+
+// motion of the tool and springs of its contacts
+double stored_energy(const Model& model, const Data& data) {
+    const ContactSystem& s = data.system;
+    double energy = 0.5 * model.tool.mass * data.velocity.head<2>().squaredNorm() +
+                    0.5 * model.tool.inertia * data.velocity.z() * data.velocity.z();
+    for (int i = 0; i < s.patches; ++i) {
+        const PatchRow& t = s.row[static_cast<std::size_t>(i)];
+        if (data.patches.patch[static_cast<std::size_t>(t.patch)].body_a >= data.tool.body_count)
+            continue;
+        energy += 0.5 * t.stiffness * t.spring * t.spring;
+        for (int k = 0; k < t.point_count; ++k) {
+            const PointRow& p = s.point[static_cast<std::size_t>(t.first_point + k)];
+            energy += p.gap < 0.0 ? 0.5 * p.stiffness * p.gap * p.gap : 0.0;
+        }
+    }
+    return energy;
 }
 
 bool contains(const std::array<std::uint64_t, k_max_patches>& ids, std::int32_t count, std::uint64_t id) {
@@ -40,7 +61,7 @@ bool contains(const std::array<std::uint64_t, k_max_patches>& ids, std::int32_t 
 
 } // namespace
 
-void finish(Data& data, StepOutput& output) {
+void finish(const Model& model, Data& data, StepOutput& output) {
     ContactSystem& s = data.system;
     std::array<std::uint64_t, k_max_patches> touched;
     std::int32_t touched_count = 0;
@@ -83,6 +104,7 @@ void finish(Data& data, StepOutput& output) {
         if (!contains(touched, touched_count, id))
             add_event(output, ContactEventKind::ended, id, data.time, nullptr, 0.0);
     }
+    output.stored_energy = stored_energy(model, data);
     data.touched = touched;
     data.touched_count = touched_count;
 }

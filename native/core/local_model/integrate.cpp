@@ -283,8 +283,9 @@ void move_anchors(ContactSystem& s, double dt) {
 }
 
 // what the sub-step did to the tool and to the movables beside it
-void book(const Model& model, Data& data, double share, double dt, StepOutput& output) {
+void book(const Model& model, Data& data, const Wrench& hand_force, double share, double dt, StepOutput& output) {
     ContactSystem& s = data.system;
+    const Vec3 velocity = s.velocity.head<3>();
     Wrench contact = Wrench::Zero();
     for (int i = 0; i < s.patches; ++i) {
         const PatchRow& t = s.row[static_cast<std::size_t>(i)];
@@ -294,6 +295,12 @@ void book(const Model& model, Data& data, double share, double dt, StepOutput& o
             on_tool += s.point[static_cast<std::size_t>(point)].force * s.normal_rows.row(point).head<3>().transpose();
         }
         contact += on_tool;
+        if (on_tool.isZero(0.0) && t.force == 0.0)
+            continue;
+        // what the other side does: force times its velocity, v_other = v_tool - gap rate
+        output.source_work += dt * (on_tool.dot(velocity) - t.force * tangent_rate(s, i));
+        for (int k = 0; k < t.point_count; ++k)
+            output.source_work -= dt * s.point[static_cast<std::size_t>(t.first_point + k)].force * row_rate(s, t.first_point + k);
         if (t.movable < 0)
             continue;
         MovableState& m = data.movable[static_cast<std::size_t>(t.movable)];
@@ -309,6 +316,7 @@ void book(const Model& model, Data& data, double share, double dt, StepOutput& o
     }
     const Wrench environment = contact + Wrench(s.external.head<3>());
     const Mat3 j = grip_jacobian(model.tool.grip, data.pose);
+    output.source_work += dt * (Wrench(s.external.head<3>()).dot(velocity) + hand_force.dot(j * velocity));
     output.contact += share * about_grip(model.tool.grip, data.pose, contact);
     output.environment += share * about_grip(model.tool.grip, data.pose, environment);
     output.grip_acceleration += share * (j * s.inverse_mass.topLeftCorner<3, 3>() * environment);
@@ -360,7 +368,7 @@ void integrate(const Model& model, Data& data, const HandInput& hand, double dt,
         }
         add_coupling(model, data, hand, used, dt, left, share, output);
     }
-    book(model, data, share, dt, output);
+    book(model, data, hand.held ? hand.force : Wrench(Wrench::Zero()), share, dt, output);
     move_anchors(s, dt);
     for (int i = 0; i < s.points; ++i)
         s.point[static_cast<std::size_t>(i)].gap += dt * row_rate(s, i);
@@ -379,7 +387,7 @@ void explicit_forces(const Model& model, Data& data, double dt, StepOutput& outp
     const FreedomVector start = data.system.velocity;
     semi_implicit(data, base, dt);
     data.system.velocity = start;
-    book(model, data, 1.0, dt, output);
+    book(model, data, Wrench::Zero(), 1.0, dt, output);
     move_anchors(data.system, dt);
 }
 

@@ -22,7 +22,7 @@ double next_collision(const Model& model, const Data& data, double limit);
 bool collide(const Model& model, Data& data, StepOutput& output);
 
 // Writes the states that follow from the step into the patches, counts them and lists events.
-void finish(Data& data, StepOutput& output);
+void finish(const Model& model, Data& data, StepOutput& output);
 
 // Moves kinematic bodies and free movables to where they are `dt` later, and blends in corrections.
 void move_neighbors(Data& data, double dt);

@@ -41,7 +41,7 @@ void step_direct(const Model& model, Data& data, const Pose& pose, const Twist& 
     local::assemble(model, data);
     output.grip_mobility = grip_mobility(model, data);
     local::explicit_forces(model, data, dt, output);
-    local::finish(data, output);
+    local::finish(model, data, output);
     ++data.step;
 }
 
@@ -67,7 +67,7 @@ void step(const Model& model, Data& data, const HandInput& hand, double dt, Step
     }
     if (left > 0.0)
         local::integrate(model, data, hand, left, 0.0, left / dt, output);
-    local::finish(data, output);
+    local::finish(model, data, output);
     ++data.step;
 }
 

@@ -21,9 +21,9 @@ struct Experiment1Options {
     double push{2.0};
     int delay_steps{1};
     double encoder{10e-6};
-    /// Multiplies the default coupling stiffness; damping grows with its root.
+    /// Multiplies the coupling of a position loop alone (1577 N/m at 500 Hz); damping grows with its root.
     double gain{1.0};
-    int velocity_window{4};
+    int velocity_window{1};
     /// Distance from tool to wall at the start, m.
     double distance{0.02};
 };
@@ -51,7 +51,7 @@ struct Experiment1 {
         s.device_delay = (o.delay_steps - 1) * s.step;
         s.reading_error = Vec3(0.5 * o.encoder, 0.5 * o.encoder, 0.5e-4);
         Mat3 mass = Vec3(o.device_mass, o.device_mass, 3e-4).asDiagonal();
-        s.gains = default_gains(mass, s.step, 0.0);
+        s.gains = default_gains(mass, Mat3::Zero(), s.step, 0.0, 1);
         s.gains.stiffness *= o.gain;
         s.gains.damping *= std::sqrt(o.gain);
         SafetyLimits limits;

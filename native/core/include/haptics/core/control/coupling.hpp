@@ -21,8 +21,9 @@ struct CouplingGains {
 };
 
 /// Largest coupling that the sampled loop holds with a comfortable margin (derivation in coupling.cpp).
-/// `device_mass` is the handle's mass matrix in scene axes, `step` the loop's period in s, `delay` what the device adds, in s.
-CouplingGains default_gains(const Mat3& device_mass, double step, double delay);
+/// `device_mass` is the handle's mass matrix in scene axes; `mobility` the proxy's J_h D^-1 J_h^T when forces are fed forward (four channels),
+/// zero otherwise; `step` the loop's period in s; `delay` what the device adds, in s; `velocity_window` that of the velocity estimate, samples.
+CouplingGains default_gains(const Mat3& device_mass, const Mat3& mobility, double step, double delay, int velocity_window);
 
 /// S = (J_h D^-1 J_h^T + M_d^-1)^-1: what device and proxy weigh together, seen at the grip. Finite where J_h D^-1 J_h^T is singular.
 Mat3 combined_mass(const Mat3& grip_mobility, const Mat3& device_mass);

@@ -27,6 +27,8 @@ struct SessionSettings {
     double device_delay{0.0};
     /// Largest reading error per coordinate (half an encoder step), m, m, rad; used to estimate velocity.
     Vec3 reading_error{5e-6, 5e-6, 5e-5};
+    /// Longest window of the velocity estimate, samples, 1 to 63: a longer one is quieter and lags more.
+    int velocity_window{2};
     /// Arm by itself as soon as the handle rests in free space. Faults still need a re-arm.
     bool arm_at_start{true};
     /// The tool is held from the start.
@@ -73,6 +75,8 @@ class Session {
     [[nodiscard]] const Pose& grab_offset() const { return grab_offset_; }
 
   private:
+    [[nodiscard]] Mat3 loop_mobility() const;
+    [[nodiscard]] double stored_energy() const;
     void read_device();
     void run_model();
     [[nodiscard]] Wrench command();
@@ -105,7 +109,6 @@ class Session {
     bool fresh_{false};
     bool missing_{false};
     bool arm_wanted_{false};
-    double coupling_energy_{0.0};
 };
 
 } // namespace haptics

@@ -73,6 +73,10 @@ struct StepOutput {
     int sticking{0};
     int sliding{0};
     double max_penetration{0.0};
+    /// Energy at the end of the step in the tool's motion, in the contact springs on it and in the coupling, J.
+    double stored_energy{0.0};
+    /// Work of the step on the tool by gravity, by what it touches (moving walls, movable neighbors) and by the hand's force channel, J.
+    double source_work{0.0};
     /// Net normal impulse of collisions along all patches, N s (sizes added).
     double impulse_size{0.0};
     /// Events of the step in the order of their patches.
