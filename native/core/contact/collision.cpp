@@ -220,7 +220,7 @@ double largest_share(double start, double slope, double curve) {
 void solve_phase(ImpulseSpace& space, const double* velocity, const double* base, Phase& phase,
                  CollisionWorkspace& workspace, SolverReport& report) {
     if (space.rows == space.contacts)
-        detail::project_normals(space, velocity, phase.impulse, workspace.factor, report);
+        detail::project_normals(space, velocity, phase.impulse, workspace, report);
     else
         detail::solve_with_friction(space, velocity, base, phase.impulse, workspace, report);
 }
@@ -276,6 +276,9 @@ void resolve_by_poisson(const CollisionProblem& problem, CollisionWorkspace& wor
     take_tangents(problem, space, rows);
     fill_delassus(space, rows, workspace.delassus);
     space.delassus = workspace.delassus;
+    space.freedoms = rows.n;
+    space.inverse_mass = problem.inverse_mass.data();
+    space.jacobian = rows.jacobian;
     const int m = space.contacts;
     const double to_scaled = 1.0 / rows.speed;
     for (int i = 0; i < space.rows; ++i) {
@@ -288,7 +291,7 @@ void resolve_by_poisson(const CollisionProblem& problem, CollisionWorkspace& wor
     double base[k_max_collision_contacts] = {};
     Phase first;
     if (space.walls_move && space.rows > m)
-        detail::project_normals(space, rows.velocity, first.impulse, workspace.factor,
+        detail::project_normals(space, rows.velocity, first.impulse, workspace,
                                 report); // finds squeezed contacts
     solve_phase(space, rows.velocity, base, first, workspace, report);
     first.sum(problem, space, rows);

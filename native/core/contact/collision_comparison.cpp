@@ -22,21 +22,6 @@ namespace {
 constexpr double k_truncation = 1e-9;
 constexpr int k_jacobi_sweeps = 30;
 
-/// Lower Cholesky factor of the inverse mass, n x n row by row.
-void factorize(const FreedomMatrix& inverse_mass, double* l) {
-    const int n = static_cast<int>(inverse_mass.rows());
-    for (int i = 0; i < n; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            double sum = inverse_mass(i, j);
-            for (int k = 0; k < j; ++k)
-                sum -= l[i * n + k] * l[j * n + k];
-            l[i * n + j] = i == j               ? std::sqrt(std::fmax(sum, 0.0))
-                           : l[j * n + j] > 0.0 ? sum / l[j * n + j]
-                                                : 0.0;
-        }
-    }
-}
-
 /// D x by the factor of D^-1, in place.
 void multiply_by_mass(const double* l, int n, FreedomVector& x) {
     for (int i = 0; i < n; ++i) {
@@ -135,8 +120,8 @@ void resolve_for_comparison(CollisionMethod method, const CollisionProblem& prob
     }
     if (count == 0)
         return;
-    double* l = workspace.tableau;
-    factorize(problem.inverse_mass, l);
+    double* l = workspace.mass_factor;
+    factorize(problem.inverse_mass.data(), n, l);
     double target[k_max_collision_contacts];
     double p[k_max_collision_contacts];
     const auto restitution = [&](int c) { return std::clamp(problem.restitution[closing[c]], 0.0, 1.0); };

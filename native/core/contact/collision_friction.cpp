@@ -297,7 +297,7 @@ void solve_with_friction(ImpulseSpace& space, const double* velocity, const doub
     if (!closing)
         return;
     double more[k_max_collision_contacts];
-    project_normals(space, v, more, workspace.factor, report);
+    project_normals(space, v, more, workspace, report);
     for (int i = 0; i < space.contacts; ++i)
         impulse[i] += more[i];
 }

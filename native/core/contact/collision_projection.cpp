@@ -23,63 +23,95 @@ constexpr int k_stride = k_max_collision_contacts;
 /// A dependent contact that closes slower than this does so by rounding.
 constexpr double k_closes = 1e-9;
 
-/// The active contacts and the Cholesky factor of their part of G.
+/// The active contacts. Their rows a = J L, with D^-1 = L L^T, are kept as A = R Q: Q orthonormal, R lower
+/// triangular. G of the active contacts is R R^T, but taking R from it would square the condition of A.
 struct ActiveSet {
-    double* factor{nullptr};
+    double* r{nullptr};
+    double* q{nullptr};
+    int width{0};
     int count{0};
     int contact[k_max_collision_contacts];
 
-    /// Forward substitution L y = b in place.
+    /// Forward substitution R y = b in place.
     void solve_lower(double* b) const {
         for (int i = 0; i < count; ++i) {
-            const double* row = factor + i * k_stride;
+            const double* row = r + i * k_stride;
             double sum = b[i];
             for (int j = 0; j < i; ++j)
                 sum -= row[j] * b[j];
             b[i] = sum / row[i];
         }
     }
-    /// Backward substitution L^T y = b in place.
+    /// Backward substitution R^T y = b in place.
     void solve_upper(double* b) const {
         for (int i = count - 1; i >= 0; --i) {
-            b[i] /= factor[i * k_stride + i];
+            b[i] /= r[i * k_stride + i];
             for (int j = 0; j < i; ++j)
-                b[j] -= factor[i * k_stride + j] * b[i];
+                b[j] -= r[i * k_stride + j] * b[i];
         }
     }
-    /// Appends a contact; `y` is L^-1 G_active,contact and `rest` > 0 what is left of its diagonal.
-    void append(int added, const double* y, double rest) {
-        double* row = factor + count * k_stride;
+    /// Splits a row into its parts along Q (y) and across (rest, width long); returns the square of the
+    /// latter.
+    double split(const double* row, double* y, double* rest) const {
+        for (int k = 0; k < width; ++k)
+            rest[k] = row[k];
+        for (int j = 0; j < count; ++j)
+            y[j] = 0.0;
+        // twice is enough (Kahan): the second pass takes out what rounding left in
+        for (int pass = 0; pass < 2; ++pass) {
+            for (int j = 0; j < count; ++j) {
+                const double* axis = q + j * width;
+                double along = 0.0;
+                for (int k = 0; k < width; ++k)
+                    along += axis[k] * rest[k];
+                for (int k = 0; k < width; ++k)
+                    rest[k] -= along * axis[k];
+                y[j] += along;
+            }
+        }
+        double square = 0.0;
+        for (int k = 0; k < width; ++k)
+            square += rest[k] * rest[k];
+        return square;
+    }
+    /// Appends a contact that was split; `square` > 0 belongs to `rest`.
+    void append(int added, const double* y, const double* rest, double square) {
+        double* row = r + count * k_stride;
+        const double length = std::sqrt(square);
         for (int j = 0; j < count; ++j)
             row[j] = y[j];
-        row[count] = std::sqrt(rest);
+        row[count] = length;
+        for (int k = 0; k < width; ++k)
+            q[count * width + k] = rest[k] / length;
         contact[count++] = added;
     }
-    /// Takes one contact out; Givens rotations bring the factor back to triangular form.
+    /// Takes one contact out; Givens rotations bring R back to triangular form.
     void remove(int place) {
         for (int i = place; i + 1 < count; ++i) {
             contact[i] = contact[i + 1];
-            double* row = factor + i * k_stride;
+            double* row = r + i * k_stride;
             const double* below = row + k_stride;
             for (int j = 0; j <= i + 1; ++j)
                 row[j] = below[j];
         }
         --count;
         for (int i = place; i < count; ++i) {
-            const double a = factor[i * k_stride + i];
-            const double b = factor[i * k_stride + i + 1];
+            const double a = r[i * k_stride + i];
+            const double b = r[i * k_stride + i + 1];
             const double length = std::sqrt(a * a + b * b);
             const double c = a / length;
             const double s = b / length;
-            factor[i * k_stride + i] = length;
-            for (int k = i + 1; k < count; ++k) {
-                double* row = factor + k * k_stride;
-                const double x = row[i];
-                const double y = row[i + 1];
-                row[i] = c * x + s * y;
-                row[i + 1] = c * y - s * x;
-            }
+            r[i * k_stride + i] = length;
+            for (int k = i + 1; k < count; ++k)
+                turn(r[k * k_stride + i], r[k * k_stride + i + 1], c, s);
+            for (int k = 0; k < width; ++k)
+                turn(q[i * width + k], q[(i + 1) * width + k], c, s);
         }
+    }
+    static void turn(double& x, double& y, double c, double s) {
+        const double old = x;
+        x = c * old + s * y;
+        y = c * y - s * old;
     }
 };
 
@@ -113,12 +145,15 @@ bool project_two(const ImpulseSpace& space, const double* v, double* p) {
 /// The walk from p = 0 to the optimum.
 class Walk {
   public:
-    Walk(ImpulseSpace& space, const double* velocity, double* impulse, double* factor, SolverReport& report)
+    Walk(ImpulseSpace& space, const double* velocity, double* impulse, CollisionWorkspace& workspace,
+         SolverReport& report)
         : space_(space)
         , velocity_(velocity)
         , impulse_(impulse)
         , report_(report) {
-        active_.factor = factor;
+        active_.r = workspace.factor;
+        active_.q = workspace.axes;
+        active_.width = space.freedoms;
         for (int i = 0; i < space.contacts; ++i) {
             impulse[i] = 0.0;
             asleep_[i] = space.excluded[i];
@@ -174,19 +209,6 @@ class Walk {
         return worst;
     }
 
-    /// y = L^-1 G_active,contact; returns the part of the diagonal that is independent of the active
-    /// contacts.
-    double split(int contact, double* y) const {
-        const double* row = space_.row(contact);
-        for (int j = 0; j < active_.count; ++j)
-            y[j] = row[active_.contact[j]];
-        active_.solve_lower(y);
-        double rest = row[contact];
-        for (int j = 0; j < active_.count; ++j)
-            rest -= y[j] * y[j];
-        return rest;
-    }
-
     void leave(int place) {
         const int contact = active_.contact[place];
         impulse_[contact] = 0.0;
@@ -197,8 +219,9 @@ class Walk {
     /// Makes a contact active; false when it cannot be or need not be.
     bool admit(int contact) {
         double y[k_max_collision_contacts];
-        double rest = split(contact, y);
-        if (rest <= k_dependent * space_.row(contact)[contact]) {
+        double rest[k_max_collision_freedoms];
+        double square = active_.split(space_.whitened_row(contact), y, rest);
+        if (square <= k_dependent) {
             asleep_[contact] = true;
             if (now_[contact] > -k_closes)
                 return false;
@@ -222,13 +245,13 @@ class Walk {
                 p = std::fmax(0.0, p - reach * y[j]);
             }
             leave(blocking);
-            rest = split(contact, y);
-            if (rest <= 0.0)
+            square = active_.split(space_.whitened_row(contact), y, rest);
+            if (square <= 0.0)
                 return false;
             impulse_[contact] = reach;
             asleep_[contact] = false;
         }
-        active_.append(contact, y, rest);
+        active_.append(contact, y, rest, square);
         is_active_[contact] = true;
         return true;
     }
@@ -264,14 +287,23 @@ class Walk {
         }
     }
 
+    /// From the motion, not from G p: large impulses that nearly cancel (a wedge) would leave no digits.
     void update_velocities() {
-        for (int i = 0; i < space_.contacts; ++i)
+        double y[k_max_collision_contacts];
+        for (int j = 0; j < active_.count; ++j)
+            y[j] = -velocity_[active_.contact[j]];
+        active_.solve_lower(y);
+        double change[k_max_collision_freedoms];
+        for (int k = 0; k < space_.freedoms; ++k)
+            change[k] = 0.0;
+        for (int j = 0; j < active_.count; ++j)
+            for (int k = 0; k < space_.freedoms; ++k)
+                change[k] += y[j] * active_.q[j * space_.freedoms + k];
+        for (int i = 0; i < space_.contacts; ++i) {
+            const double* row = space_.whitened_row(i);
             now_[i] = velocity_[i];
-        for (int j = 0; j < active_.count; ++j) {
-            const double p = impulse_[active_.contact[j]];
-            const double* column = space_.row(active_.contact[j]);
-            for (int i = 0; i < space_.contacts; ++i)
-                now_[i] += column[i] * p;
+            for (int k = 0; k < space_.freedoms; ++k)
+                now_[i] += row[k] * change[k];
         }
     }
 
@@ -305,8 +337,12 @@ class Walk {
             leave(active_.count - 1);
         for (int j = 0; j < remembered_count_; ++j) {
             double y[k_max_collision_contacts];
+            double rest[k_max_collision_freedoms];
             const int old = remembered_contact_[j];
-            active_.append(old, y, std::fmax(split(old, y), k_dependent));
+            const double square = active_.split(space_.whitened_row(old), y, rest);
+            if (square <= 0.0)
+                continue;
+            active_.append(old, y, rest, square);
             is_active_[old] = true;
             impulse_[old] = remembered_impulse_[j];
         }
@@ -314,16 +350,49 @@ class Walk {
     }
 };
 
+/// J L with D^-1 = L L^T: rows whose products are J D^-1 J^T.
+void whiten(ImpulseSpace& space, CollisionWorkspace& workspace) {
+    const int n = space.freedoms;
+    double* l = workspace.mass_factor;
+    factorize(space.inverse_mass, n, l);
+    for (int i = 0; i < space.contacts; ++i) {
+        const double* row = space.jacobian + i * n;
+        double* to = workspace.whitened + i * n;
+        for (int k = 0; k < n; ++k)
+            to[k] = 0.0;
+        for (int j = 0; j < n; ++j)
+            for (int k = 0; k <= j; ++k)
+                to[k] += row[j] * l[j * n + k];
+    }
+    space.whitened = workspace.whitened;
+}
+
 } // namespace
 
-void project_normals(ImpulseSpace& space, const double* velocity, double* impulse, double* factor,
-                     SolverReport& report) noexcept {
+void factorize(const double* matrix, int n, double* l) noexcept {
+    for (int i = 0; i < n; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            double sum = matrix[i * n + j];
+            for (int k = 0; k < j; ++k)
+                sum -= l[i * n + k] * l[j * n + k];
+            if (i == j)
+                l[i * n + i] = std::sqrt(std::fmax(sum, 0.0));
+            else
+                l[i * n + j] = l[j * n + j] > 0.0 ? sum / l[j * n + j] : 0.0;
+        }
+    }
+}
+
+void project_normals(ImpulseSpace& space, const double* velocity, double* impulse,
+                     CollisionWorkspace& workspace, SolverReport& report) noexcept {
     if (space.contacts == 2 && !space.excluded[0] && !space.excluded[1] &&
         project_two(space, velocity, impulse)) {
         ++report.iterations;
         return;
     }
-    Walk(space, velocity, impulse, factor, report).run();
+    if (space.whitened == nullptr)
+        whiten(space, workspace);
+    Walk(space, velocity, impulse, workspace, report).run();
 }
 
 } // namespace haptics::detail

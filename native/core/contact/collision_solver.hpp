@@ -11,7 +11,7 @@ namespace haptics::detail {
 inline constexpr double k_still = 1e-12;
 
 /// A normal whose part independent of the active ones is below this share of its square counts as dependent.
-inline constexpr double k_dependent = 1e-13;
+inline constexpr double k_dependent = 1e-14;
 /// Between moving walls, impulses above this mean a jam (scaled: the fastest contact alone would take 1).
 inline constexpr double k_jammed = 1e3;
 
@@ -22,6 +22,13 @@ struct ImpulseSpace {
     int rows{0};
     /// rows x rows, row by row.
     const double* delassus{nullptr};
+    /// What it is made of: freedoms x freedoms, rows x freedoms.
+    int freedoms{0};
+    const double* inverse_mass{nullptr};
+    const double* jacobian{nullptr};
+    /// contacts x freedoms: the normals times the Cholesky factor of the inverse mass; filled in when first
+    /// needed.
+    const double* whitened{nullptr};
     /// Walls at rest always leave a motion that satisfies all contacts; moving ones may not.
     bool walls_move{false};
     /// Row of the contact's tangent, -1 without friction.
@@ -31,6 +38,7 @@ struct ImpulseSpace {
     bool excluded[k_max_collision_contacts];
 
     [[nodiscard]] const double* row(int i) const { return delassus + i * rows; }
+    [[nodiscard]] const double* whitened_row(int i) const { return whitened + i * freedoms; }
 };
 
 /// Counters that all phases add to.
@@ -46,8 +54,12 @@ struct SolverReport {
 /// + G p) = 0 for the normal velocities v. Contacts that cannot be satisfied become excluded and count as
 /// squeezed. When the bound on iterations is reached, p is still >= 0 and still takes energy, but some
 /// contacts may still close.
-void project_normals(ImpulseSpace& space, const double* velocity, double* impulse, double* factor,
-                     SolverReport& report) noexcept;
+void project_normals(ImpulseSpace& space, const double* velocity, double* impulse,
+                     CollisionWorkspace& workspace, SolverReport& report) noexcept;
+
+/// Lower Cholesky factor of a symmetric matrix, n x n row by row; columns without a positive pivot become
+/// zero.
+void factorize(const double* matrix, int n, double* l) noexcept;
 
 /// One phase with Coulomb friction: normal increments z >= 0 (rows 0..contacts-1) and tangential impulses
 /// (tangent rows) with |p_t| <= friction (base + z), z complementary to the normal velocity after, p_t

@@ -106,7 +106,7 @@ struct CollisionSolution {
     bool fell_back{false};
 };
 
-/// Scratch memory of resolve_collisions, about 550 kB, no state between calls. One per thread.
+/// Scratch memory of resolve_collisions, about 750 kB, no state between calls. One per thread.
 struct CollisionWorkspace {
     static constexpr int k_rows = 2 * k_max_collision_contacts;
     static constexpr int k_complementarity = 4 * k_max_exact_friction_contacts + k_max_collision_contacts;
@@ -117,7 +117,12 @@ struct CollisionWorkspace {
     double response[k_rows * k_max_collision_freedoms];
     /// J D^-1 J^T.
     double delassus[k_rows * k_rows];
-    /// Cholesky factor of the active normals; singular vectors of the comparison methods.
+    /// L of D^-1 = L L^T, and the normals times L.
+    double mass_factor[k_max_collision_freedoms * k_max_collision_freedoms];
+    double whitened[k_max_collision_contacts * k_max_collision_freedoms];
+    /// Orthonormal axes and triangular factor of the active normals; singular vectors of the comparison
+    /// methods.
+    double axes[k_max_collision_contacts * k_max_collision_freedoms];
     double factor[k_max_collision_contacts * k_max_collision_contacts];
     /// Tableau of the complementarity problem with friction.
     double tableau[k_complementarity * (k_complementarity + 2)];
