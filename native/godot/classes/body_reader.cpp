@@ -2,7 +2,6 @@
 
 #include <haptics/classes/body_registry.hpp>
 #include <haptics/classes/world_settings.hpp>
-
 #include <haptics/core/geometry/decompose.hpp>
 #include <haptics/core/geometry/outline.hpp>
 #include <haptics/core/geometry/seams.hpp>
@@ -10,6 +9,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace haptics {
 
@@ -54,12 +54,18 @@ void book_capsule(ShapeContext& c, const Vec2& from, const Vec2& to, double r) {
 
 const char* name_of(OutlineError error) {
     switch (error) {
-    case OutlineError::none: return "fine";
-    case OutlineError::empty: return "empty";
-    case OutlineError::not_finite: return "not finite";
-    case OutlineError::too_few_points: return "without three different corners";
-    case OutlineError::zero_area: return "without area";
-    case OutlineError::self_crossing: return "crossing itself";
+    case OutlineError::none:
+        return "fine";
+    case OutlineError::empty:
+        return "empty";
+    case OutlineError::not_finite:
+        return "not finite";
+    case OutlineError::too_few_points:
+        return "without three different corners";
+    case OutlineError::zero_area:
+        return "without area";
+    case OutlineError::self_crossing:
+        return "crossing itself";
     }
     return "unusable";
 }
@@ -73,22 +79,26 @@ void add(ShapeContext& c, std::uint32_t id, const Convex& convex, DictionaryRead
     c.pieces.push_back(p);
 }
 
-std::vector<Vec2> read_points(DictionaryReader& r, const Vec2& center, Problems& problems) {
+// nothing when a point is no number, which has then been said
+std::optional<std::vector<Vec2>> read_points(DictionaryReader& r, const Vec2& center, Problems& problems) {
     const std::vector<double> flat = r.numbers("points");
     std::vector<Vec2> points;
     if (flat.size() % 2 != 0)
-        problems.add(r.place() + "points has " + std::to_string(flat.size()) + " numbers; it must hold pairs of x, y.");
+        problems.add(r.place() + "points has " + std::to_string(flat.size()) +
+                     " numbers; it must hold pairs of x, y.");
     for (std::size_t i = 0; i + 1 < flat.size(); i += 2)
         points.emplace_back(Vec2(flat[i], flat[i + 1]) - center);
     for (const Vec2& p : points)
         if (!p.allFinite()) {
-            problems.add(r.place() + "points holds a number that is not finite. Give every corner a real position.");
-            return {};
+            problems.add(r.place() +
+                         "points holds a number that is not finite. Give every corner a real position.");
+            return std::nullopt;
         }
     return points;
 }
 
-bool expect(std::size_t found, std::size_t wanted, const std::string& kind, const std::string& place, Problems& problems) {
+bool expect(std::size_t found, std::size_t wanted, const std::string& kind, const std::string& place,
+            Problems& problems) {
     if (found == wanted)
         return true;
     problems.add(place + "points of a " + kind + " has " + std::to_string(found) + " points, must have " +
@@ -107,7 +117,8 @@ void read_polygon(const std::vector<Vec2>& points, std::uint32_t id, ShapeContex
     const Decomposition cut = decompose(points, c.rounding);
     if (cut.error != OutlineError::none) {
         const std::string at = cut.where >= 0 ? " at corner " + std::to_string(cut.where) : "";
-        c.problems.add(r.place() + "points: the outline is " + name_of(cut.error) + at + ". " + remedy(cut.error));
+        c.problems.add(r.place() + "points: the outline is " + name_of(cut.error) + at + ". " +
+                       remedy(cut.error));
         return;
     }
     const AreaProperties area = area_properties(points);
@@ -122,7 +133,10 @@ void read_shape(const Dictionary& from, const std::string& place, ShapeContext& 
     const std::string kind = r.text("kind", "");
     const auto id = static_cast<std::uint32_t>(r.number("id", 1.0));
     const double radius = r.number("radius", 0.0);
-    const std::vector<Vec2> points = read_points(r, kind == "half_plane" ? Vec2(Vec2::Zero()) : c.center, c.problems);
+    const auto read = read_points(r, kind == "half_plane" ? Vec2(Vec2::Zero()) : c.center, c.problems);
+    if (!read)
+        return;
+    const std::vector<Vec2>& points = *read;
     if (kind == "polygon") {
         read_polygon(points, id, c, r);
     } else if (kind == "circle") {
@@ -144,14 +158,16 @@ void read_shape(const Dictionary& from, const std::string& place, ShapeContext& 
         else
             c.problems.add(place + "points of a half_plane must hold a point and a normal that is not zero.");
     } else {
-        c.problems.add(place + "kind is \"" + kind + "\", must be one of: polygon, circle, capsule, segment, half_plane.");
+        c.problems.add(place + "kind is \"" + kind +
+                       "\", must be one of: polygon, circle, capsule, segment, half_plane.");
     }
     r.finish();
 }
 
 } // namespace
 
-BodySpec read_body(const Dictionary& from, const std::string& place, const Surface& fallback, Problems& problems) {
+BodySpec read_body(const Dictionary& from, const std::string& place, const Surface& fallback,
+                   Problems& problems) {
     BodySpec spec;
     DictionaryReader r(from, place, problems);
     spec.body.kind = r.choice("kind", BodyKind::fixed,
@@ -168,7 +184,8 @@ BodySpec read_body(const Dictionary& from, const std::string& place, const Surfa
     const Array shapes = r.array("shapes");
     for (int64_t i = 0; i < shapes.size(); ++i) {
         if (shapes[i].get_type() != Variant::DICTIONARY) {
-            problems.add(place + "shapes holds something that is not a Dictionary at place " + std::to_string(i) + ".");
+            problems.add(place + "shapes holds something that is not a Dictionary at place " +
+                         std::to_string(i) + ".");
             continue;
         }
         read_shape(shapes[i].to<Dictionary>(), place + "shapes[" + std::to_string(i) + "].", c);
@@ -180,10 +197,16 @@ BodySpec read_body(const Dictionary& from, const std::string& place, const Surfa
     const bool has_mass = spec.body.kind == BodyKind::movable || spec.body.kind == BodyKind::tool;
     if (has_mass) {
         FigureCheck check(place);
-        check.range("mass", spec.body.mass, 1e-6, 1e4, "kg", "Give the body a mass.");
-        if (spec.body.inertia == 0.0)
+        const bool has_shape = problems.none();
+        const bool heavy = check.range("mass", spec.body.mass, 1e-6, 1e4, "kg",
+                                       "Give it a mass; 0.1 kg suits what a desktop device moves.");
+        const bool computed = spec.body.inertia == 0.0;
+        if (computed)
             spec.body.inertia = c.area > 0.0 ? spec.body.mass * c.second_moment / c.area : 0.0;
-        check.range("inertia", spec.body.inertia, 1e-12, 1e4, "kg m^2", "Leave it at 0 to have it computed from the shapes.");
+        // an inertia that follows from a wrong mass or shape is no second mistake
+        if (!computed || (heavy && has_shape))
+            check.range("inertia", spec.body.inertia, 1e-12, 1e4, "kg m^2",
+                        "Leave it at 0 to have it computed from the shapes.");
         problems.add(check.take());
     }
     r.finish();

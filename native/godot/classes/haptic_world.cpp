@@ -1,5 +1,4 @@
 #include <haptics/classes/haptic_world.hpp>
-
 #include <haptics/core/local_model/validate.hpp>
 
 #include <cmath>
@@ -25,9 +24,12 @@ Surface neutral_surface() {
 // largest error of a reading per coordinate, for the velocity estimate
 Vec3 reading_error(const SimulatedPantographOptions& o) {
     switch (o.encoder_model) {
-    case EncoderModel::exact: return {1e-9, 1e-9, 1e-8};
-    case EncoderModel::handle: return 0.5 * o.encoder_resolution;
-    case EncoderModel::joint: break;
+    case EncoderModel::exact:
+        return {1e-9, 1e-9, 1e-8};
+    case EncoderModel::handle:
+        return 0.5 * o.encoder_resolution;
+    case EncoderModel::joint:
+        break;
     }
     // half a count at the motor axis, seen at the end of a stretched arm
     const FiveBarGeometry& bar = o.geometry.bar[0];
@@ -72,6 +74,9 @@ void HapticWorld::set_tool(const Dictionary& tool, Problems& problems) {
     t.grip.pose = r.flag("grip_pose", true);
     tool_start_ = r.vec3("start", Vec3::Zero());
     r.finish();
+    // what follows from these would only repeat them
+    if (!problems.none())
+        return;
     t.mass = spec.body.mass;
     t.inertia = spec.body.inertia;
     if (spec.pieces.size() > static_cast<std::size_t>(k_max_pieces)) {
@@ -117,12 +122,13 @@ void HapticWorld::remove_body(std::int64_t id) {
     complained_.erase(id);
 }
 
-void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const double> states, double tick, const Vec2& gravity,
-                         Problems& problems) {
+void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const double> states, double tick,
+                         const Vec2& gravity, Problems& problems) {
     if (!running())
         return;
     if (!std::isfinite(tick) || tick < 1e-3 || tick > 1.0 || !gravity.allFinite()) {
-        problems.add("The tick is " + seconds_text(tick) + "; it must lie between 0.001 and 1 s, and gravity must be finite.");
+        problems.add("The tick is " + seconds_text(tick) +
+                     "; it must lie between 0.001 and 1 s, and gravity must be finite.");
         return;
     }
     Neighborhood& n = runner_->neighborhood();
@@ -164,7 +170,8 @@ void HapticWorld::start(bool realtime, double record_seconds, Problems& problems
     session.reading_error = reading_error(*device_options_);
     OutputGate gate(settings_.safety, device_->kinematics());
     gate.set_homed(true); // a simulated device knows its zero
-    auto made = std::make_unique<Session>(session, model, gate, *device_, node_to_center(tool_start_, tool_center_));
+    auto made =
+        std::make_unique<Session>(session, model, gate, *device_, node_to_center(tool_start_, tool_center_));
     gains_ = made->gains();
     report_ = made->report();
     runner_ = std::make_unique<HapticRunner>(std::move(made), hand_.get());
@@ -287,7 +294,8 @@ Dictionary HapticWorld::statistics() const {
     }
     const RunFigures& run = report_.run;
     d["max_force_n"] = run.max_force;
-    d["rms_position_error_m"] = run.error_count > 0 ? std::sqrt(run.error_sum / static_cast<double>(run.error_count)) : 0.0;
+    d["rms_position_error_m"] =
+        run.error_count > 0 ? std::sqrt(run.error_sum / static_cast<double>(run.error_count)) : 0.0;
     d["max_penetration_m"] = run.max_penetration;
     d["energy_injected_j"] = report_.energy_injected;
     d["collisions"] = static_cast<int64_t>(run.collisions);
