@@ -1,0 +1,66 @@
+@tool
+extends "body_reader.gd"
+## RigidBody2D and HapticObject2D: Godot moves them, the tool pushes them and they push back.
+
+# stands for a body that cannot turn, kg m²
+const _NO_TURNING := 1.0e3
+
+
+func kind() -> String:
+	var body := node as RigidBody2D
+	if not body.freeze:
+		return "movable"
+	return "fixed" if body.freeze_mode == RigidBody2D.FREEZE_MODE_STATIC else "kinematic"
+
+
+func describe(fallback: HapticSurface) -> Dictionary:
+	var body := node as RigidBody2D
+	var description := super.describe(fallback)
+	if body.freeze:
+		return description
+	description["mass"] = body.mass
+	description["inertia"] = _inertia(body)
+	var center := body.center_of_mass
+	var state := PhysicsServer2D.body_get_direct_state(body.get_rid())
+	if body.center_of_mass_mode == RigidBody2D.CENTER_OF_MASS_MODE_AUTO and state != null:
+		center = state.center_of_mass_local
+	description["center"] = _units.local_to_meters(center)
+	return description
+
+
+func read_state(tick: int, seconds: float) -> PackedFloat64Array:
+	var body := node as RigidBody2D
+	if body.freeze:
+		return super.read_state(tick, seconds)
+	_pose = _read_pose()
+	_tick = tick
+	var velocity := _units.velocity_to_meters(body.linear_velocity)
+	velocity.append(-body.angular_velocity)
+	return _pose + velocity
+
+
+func take_impulse(x: float, y: float, angular: float, time_scale: float) -> void:
+	var body := node as RigidBody2D
+	if body.freeze:
+		return
+	body.sleeping = false
+	body.apply_central_impulse(_units.impulse_to_canvas(x, y) / time_scale)
+	if not body.lock_rotation:
+		body.apply_torque_impulse(_units.angular_impulse_to_canvas(angular) / time_scale)
+
+
+# rigid bodies lose their scale anyway; a warning says so
+func scaling() -> Transform2D:
+	return Transform2D.IDENTITY
+
+
+# 0 lets the native side compute it from the shapes
+func _inertia(body: RigidBody2D) -> float:
+	if body.lock_rotation:
+		return _NO_TURNING
+	if body.inertia > 0.0:
+		return _units.inertia_to_meters(body.inertia)
+	var state := PhysicsServer2D.body_get_direct_state(body.get_rid())
+	if state == null or state.inverse_inertia <= 0.0:
+		return 0.0
+	return _units.inertia_to_meters(1.0 / state.inverse_inertia)

@@ -1,0 +1,423 @@
+@tool
+@icon("res://addons/haptics/icons/haptic_world_2d.svg")
+class_name HapticWorld2D
+extends Node2D
+## The haptic side of a scene: runs the loop that holds the device, and keeps its picture of what
+## lies around the tool fresh at every physics tick.
+##
+## One per World2D. Add it with a [HapticTool2D] anywhere in the scene; bodies that the tool's
+## collision_mask selects can be felt. Its origin is the origin of the device's workspace; its scale
+## has to stay 1. All signals come on the main thread.
+
+## The loop runs.
+signal started
+## The loop ended.
+signal stopped
+## The output went off, and stays off until [method arm]; `fault` says why and what to do.
+signal fault_raised(fault: String)
+## Another tool is held; either may be null.
+signal tool_changed(from: HapticTool2D, to: HapticTool2D)
+
+## What drives the haptic steps.
+enum Mode {
+	## A thread of its own, in real time.
+	REALTIME,
+	## The physics tick: repeatable bit for bit, for tests, experiments and recordings.
+	LOCKSTEP,
+}
+
+## How device and tool are tied together.
+enum Coupling {
+	## Positions and forces go both ways.
+	FOUR_CHANNEL,
+	## A spring and a damper between them.
+	VIRTUAL_COUPLING,
+	## The device is the tool.
+	DIRECT,
+}
+
+## What happens when a contact closes.
+enum Contact {
+	## A collision impulse, and spring and damper afterwards.
+	PENALTY_IMPULSE,
+	## Spring and damper alone.
+	PENALTY,
+}
+
+## How contacts are integrated in time.
+enum Integrator {
+	## Stable for every stiffness and mass; damps fast contact modes.
+	LINEARLY_IMPLICIT,
+	## Cheapest; needs m > (K h² + 2 B h) / 4 per contact.
+	SEMI_IMPLICIT,
+}
+
+## How collisions of several contacts at once are resolved.
+enum CollisionMethod {
+	## Compression and restitution, impulses never pull, energy never grows.
+	POISSON,
+	## Prescribed rebound weighted by mass, for comparison.
+	MASS_WEIGHTED,
+	## Equation (5) of the paper as printed, for comparison.
+	PAPER,
+}
+
+## Where gravity comes from.
+enum GravitySource {
+	## None: a planar device lies flat.
+	NONE,
+	## The World2D's, in px/s² over [member pixels_per_meter].
+	PROJECT,
+	## [member gravity].
+	CUSTOM,
+}
+
+const Gateway := preload("gateway.gd")
+const Warnings := preload("warnings.gd")
+const Checks := preload("checks.gd")
+const Session := preload("world_session.gd")
+
+## Group of all haptic worlds in the tree.
+const WORLDS := &"_haptic_worlds"
+## Group of all tools in the tree.
+const TOOLS := &"_haptic_tools"
+
+const _COUPLINGS: PackedStringArray = ["four_channel", "virtual_coupling", "direct"]
+const _CONTACTS: PackedStringArray = ["penalty_impulse", "penalty"]
+const _INTEGRATORS: PackedStringArray = ["linearly_implicit", "semi_implicit"]
+const _METHODS: PackedStringArray = ["poisson", "mass_weighted", "paper"]
+const _AFTER_ALL_ELSE := 1000
+
+## What the user holds.
+@export var device: HapticDevice
+## Haptic steps a second, Hz, 250 to 10000.
+@export_range(250.0, 10000.0, 1.0, "suffix:Hz") var rate: float = 1000.0
+## How large the scene feels, px/m: at 4000 a workspace of 16 cm is 640 px wide.
+@export_range(1.0, 100000.0, 1.0, "or_greater", "exp", "suffix:px/m")
+var pixels_per_meter: float = 4000.0
+## Surface of bodies that have none of their own; without one the paper's wall.
+@export var default_surface: HapticSurface
+## What every force is held to; without one the defaults.
+@export var safety: HapticSafetyLimits
+
+@export_group("Running")
+## What drives the haptic steps.
+@export var mode: Mode = Mode.REALTIME
+## Starts with the scene.
+@export var auto_start: bool = true
+## Arms as soon as the handle rests in free space; else [method arm] does.
+@export var arm_at_start: bool = true
+## The tool is held from the start; else [method hold] takes it.
+@export var hold_at_start: bool = true
+## How much of the run is recorded for [method save_recording], s, 0 to 3600.
+@export_range(0.0, 600.0, 0.1, "or_greater", "suffix:s") var record_seconds: float = 0.0
+
+@export_group("Method")
+## How device and tool are tied together.
+@export var coupling: Coupling = Coupling.FOUR_CHANNEL
+## What happens when a contact closes.
+@export var contact: Contact = Contact.PENALTY_IMPULSE
+## How contacts are integrated in time.
+@export var integrator: Integrator = Integrator.LINEARLY_IMPLICIT
+## How collisions of several contacts at once are resolved.
+@export var collision_method: CollisionMethod = CollisionMethod.POISSON
+## Approach slower than this gives no collision impulse, m/s.
+@export_range(0.0001, 0.1, 0.0001, "or_greater", "suffix:m/s") var collision_speed: float = 0.005
+## Stiffness of the coupling, N/m; 0 chooses it from rate, delay and masses.
+@export_range(0.0, 20000.0, 1.0, "or_greater", "suffix:N/m") var coupling_stiffness: float = 0.0
+## Damping of the coupling, N s/m; 0 chooses it.
+@export_range(0.0, 200.0, 0.1, "or_greater", "suffix:N s/m") var coupling_damping: float = 0.0
+## Stiffness of the coupling in rotation, N m/rad; 0 chooses it.
+@export_range(0.0, 100.0, 0.001, "or_greater", "suffix:N m/rad")
+var coupling_rotation_stiffness: float = 0.0
+## Damping of the coupling in rotation, N m s/rad; 0 chooses it.
+@export_range(0.0, 1.0, 0.0001, "or_greater", "suffix:N m s/rad")
+var coupling_rotation_damping: float = 0.0
+
+@export_group("Gravity")
+## Where the gravity of the tool and of movable bodies around it comes from.
+@export var gravity_source: GravitySource = GravitySource.NONE
+## Gravity of [constant CUSTOM], in the axes of the screen (y down).
+@export_custom(PROPERTY_HINT_NONE, "suffix:m/s²") var gravity: Vector2 = Vector2.ZERO
+
+@export_group("Mapping", "mapping")
+## Meters in the scene per meter at the device; a wall feels s² times as stiff.
+@export_range(0.1, 10.0, 0.001, "or_greater") var mapping_scale: float = 1.0
+## Turn of the device's axes in the scene, rad, clockwise.
+@export_range(-180.0, 180.0, 0.1, "radians_as_degrees") var mapping_rotation: float = 0.0
+
+var _unattended := DisplayServer.get_name() == "headless"
+var _warnings := Warnings.new(self, Checks.of_world.bind(self))
+var _session: Session
+var _wants_start := false
+
+
+func _notification(what: int) -> void:
+	match what:
+		NOTIFICATION_ENTER_TREE:
+			add_to_group(WORLDS)
+			process_physics_priority = _AFTER_ALL_ELSE
+			process_priority = -_AFTER_ALL_ELSE
+			_wants_start = auto_start
+		NOTIFICATION_EXIT_TREE:
+			stop()
+		NOTIFICATION_PAUSED:
+			if is_running():
+				_session.native.set_paused(true)
+		NOTIFICATION_UNPAUSED:
+			if is_running():
+				_session.native.set_paused(false)
+	_warnings.follow(what)
+
+
+func _physics_process(delta: float) -> void:
+	if Engine.is_editor_hint():
+		return
+	if _wants_start:
+		_wants_start = false
+		start()
+	if is_running():
+		_warnings.say_these(_session.tick(delta))
+
+
+func _process(_delta: float) -> void:
+	if is_running():
+		_session.show()
+
+
+func _input(event: InputEvent) -> void:
+	if Engine.is_editor_hint() or not is_running():
+		return
+	var action := HapticSettings.text(HapticSettings.STOP_ACTION)
+	if action != "" and InputMap.has_action(action):
+		if event.is_action_pressed(action):
+			press_stop()
+		return
+	var key := event as InputEventKey
+	if key != null and key.pressed and not key.echo and key.keycode == KEY_ESCAPE:
+		press_stop()
+
+
+## The haptic world of that node's World2D; null without one.
+static func find_for(node: CanvasItem) -> HapticWorld2D:
+	if not node.is_inside_tree():
+		return null
+	for other: Node in node.get_tree().get_nodes_in_group(WORLDS):
+		var world := other as HapticWorld2D
+		if world != null and world.get_world_2d() == node.get_world_2d():
+			return world
+	return null
+
+
+## Starts the loop. False, after errors that say why, when it cannot.
+func start() -> bool:
+	if is_running():
+		return true
+	if Engine.is_editor_hint() or Gateway.server() == null or find_for(self) != self:
+		return false
+	var session := Session.new(self)
+	var problems := session.start()
+	_warnings.say_these(problems)
+	if not session.native.is_running():
+		return false
+	_session = session
+	tool_changed.emit(null, session.tool)
+	started.emit()
+	return true
+
+
+## Ends the loop and takes the force off.
+func stop() -> void:
+	if _session == null:
+		return
+	var was := _session.tool if is_instance_valid(_session.tool) else null
+	_session.stop()
+	_session = null
+	tool_changed.emit(was, null)
+	stopped.emit()
+
+
+## True between start and stop.
+func is_running() -> bool:
+	return _session != null
+
+
+## The tool of this world; null without one.
+func get_tool() -> HapticTool2D:
+	if _session != null and is_instance_valid(_session.tool):
+		return _session.tool
+	if not is_inside_tree():
+		return null
+	for other: Node in get_tree().get_nodes_in_group(TOOLS):
+		var tool := other as HapticTool2D
+		if tool != null and tool.get_world_2d() == get_world_2d():
+			return tool
+	return null
+
+
+## Asks for force. It comes when the handle rests in free space; it clears faults.
+func arm(armed: bool = true) -> void:
+	if is_running():
+		_session.native.arm(armed)
+
+
+## Takes the force off at once, until [method arm].
+func press_stop() -> void:
+	if is_running():
+		_session.native.press_stop()
+
+
+## The hand takes hold of the tool, or lets go.
+func hold(held: bool = true) -> void:
+	if is_running():
+		_session.native.hold(held)
+
+
+## True when forces go to the device.
+func is_armed() -> bool:
+	return is_running() and _session.state[Gateway.State.ARMED] > 0.0
+
+
+## True while the hand holds the tool.
+func is_held() -> bool:
+	return is_running() and _session.state[Gateway.State.HELD] > 0.0
+
+
+## Force on the hand, N, in the canvas's axes.
+func get_force() -> Vector2:
+	return _vector(Gateway.State.FORCE_X)
+
+
+## Torque on the hand, N m, clockwise.
+func get_torque() -> float:
+	return -_value(Gateway.State.TORQUE)
+
+
+## Force of all contacts on the tool, N, in the canvas's axes.
+func get_contact_force() -> Vector2:
+	return _vector(Gateway.State.CONTACT_FORCE_X)
+
+
+## Deepest overlap of tool and surroundings now, m.
+func get_penetration() -> float:
+	return _value(Gateway.State.PENETRATION)
+
+
+## Speed of the tool's center of mass, m/s.
+func get_speed() -> float:
+	return _vector(Gateway.State.VELOCITY_X).length()
+
+
+## Where the tool is held, on the canvas.
+func get_grip() -> Transform2D:
+	return _pose(Gateway.State.GRIP_X)
+
+
+## Where the handle of the device is, on the canvas.
+func get_handle() -> Transform2D:
+	return _pose(Gateway.State.DEVICE_X)
+
+
+## What touches now.
+func get_contacts() -> Array[HapticContact]:
+	if not is_running():
+		return []
+	return _session.get_contacts()
+
+
+## Latched faults, cause and remedy each.
+func get_faults() -> PackedStringArray:
+	return _session.native.get_faults() if is_running() else PackedStringArray()
+
+
+## Figures of the run, named as in run.json; empty when it does not run.
+func get_statistics() -> Dictionary:
+	return _session.native.get_statistics() if is_running() else {}
+
+
+## The newest report, in the order of HapticServer.STATE_*, SI and y up; empty when it does not run.
+func get_state() -> PackedFloat64Array:
+	return _session.state if is_running() else PackedFloat64Array()
+
+
+## Bodies in the last snapshot of the neighborhood.
+func get_neighbor_count() -> int:
+	return _session.neighborhood.near_count if is_running() else 0
+
+
+## Where a hand of kind MOUSE wants the grip, on the canvas (px, rad).
+func aim(point: Vector2, angle: float) -> void:
+	if is_running():
+		_session.aim(point, angle)
+
+
+## Writes the recording as CSV, one row a haptic step. OK, or FAILED after an error that says why.
+func save_recording(path: String) -> Error:
+	if not is_running():
+		push_error("%s: there is no recording, because the world does not run." % get_path())
+		return FAILED
+	var problems := _session.native.save_recording(ProjectSettings.globalize_path(path))
+	for text: String in problems:
+		push_error("%s: %s" % [get_path(), text])
+	return OK if problems.is_empty() else FAILED
+
+
+## True when nobody is there to move the device: without a display and in lock-step.
+func is_unattended() -> bool:
+	return _unattended or mode == Mode.LOCKSTEP
+
+
+## Whether somebody is there to move the device. Before the start.
+func set_unattended(unattended: bool) -> void:
+	_unattended = unattended
+
+
+## As the native side takes it.
+func to_settings() -> Dictionary:
+	var limits := safety if safety != null else HapticSafetyLimits.new()
+	var tool := get_tool()
+	var heaviest := tool.mass if tool != null else 0.0
+	var largest := tool.inertia if tool != null else 0.0
+	if device != null:
+		heaviest = maxf(heaviest, device.moving_mass(is_unattended()))
+		largest = maxf(largest, device.moving_inertia(is_unattended()))
+	return {
+		"rate": rate,
+		"priority": HapticSettings.number(HapticSettings.PRIORITY),
+		"cpu": HapticSettings.number(HapticSettings.PROCESSOR),
+		"coupling": _COUPLINGS[coupling],
+		"coupling_stiffness":
+		PackedFloat64Array([coupling_stiffness, coupling_stiffness, coupling_rotation_stiffness]),
+		"coupling_damping":
+		PackedFloat64Array([coupling_damping, coupling_damping, coupling_rotation_damping]),
+		"mapping_scale": mapping_scale,
+		"mapping_rotation": -mapping_rotation,
+		"arm_at_start": arm_at_start,
+		"hold_at_start": hold_at_start,
+		"contact": _CONTACTS[contact],
+		"integrator": _INTEGRATORS[integrator],
+		"collision_method": _METHODS[collision_method],
+		"collision_speed": collision_speed,
+		"safety": limits.to_settings(clampf(heaviest, 0.001, 100.0), clampf(largest, 1e-6, 10.0)),
+	}
+
+
+func _value(index: Gateway.State) -> float:
+	return _session.state[index] if is_running() else 0.0
+
+
+func _vector(first: Gateway.State) -> Vector2:
+	if not is_running():
+		return Vector2.ZERO
+	return _session.units.vector_to_canvas(_session.state[first], _session.state[first + 1])
+
+
+func _pose(first: Gateway.State) -> Transform2D:
+	if not is_running():
+		return global_transform
+	var state := _session.state
+	return _session.units.pose_to_canvas(state[first], state[first + 1], state[first + 2])
+
+
+func _get_configuration_warnings() -> PackedStringArray:
+	return _warnings.shown()

@@ -1,0 +1,184 @@
+@tool
+extends RefCounted
+## One run of a haptic world, from start to stop: hands snapshots to the loop, brings its reports
+## back into the scene.
+
+const Gateway := preload("gateway.gd")
+const Neighborhood := preload("../environment/neighborhood.gd")
+const ToolReader := preload("../environment/tool_reader.gd")
+
+# below this scale of time a scene counts as paused
+const _LEAST_TIME_SCALE := 0.1
+
+## The native world.
+var native := Gateway.new()
+## What is held.
+var tool: HapticTool2D
+## Its bodies.
+var neighborhood: Neighborhood
+## Conversion of this world.
+var units: HapticUnits
+## The newest report.
+var state: PackedFloat64Array
+
+var _world: HapticWorld2D
+var _cursor: HapticHandCursor2D
+var _is_lockstep := false
+var _is_stalled := false
+var _faults: PackedStringArray = []
+
+
+func _init(world: HapticWorld2D) -> void:
+	_world = world
+	_is_lockstep = world.mode == HapticWorld2D.Mode.LOCKSTEP
+	units = HapticUnits.new(world.pixels_per_meter, world.global_transform)
+	neighborhood = Neighborhood.new(native, units)
+	neighborhood.default_surface = world.default_surface
+
+
+## Sets everything up and starts the loop. Returns what is wrong.
+func start() -> PackedStringArray:
+	# what the world, the tool and their checks say is not said twice
+	var unattended := _world.is_unattended()
+	tool = _world.get_tool()
+	if tool == null or _world.device == null or units.pixels_per_meter <= 0.0:
+		return []
+	var problems := PackedStringArray()
+	var wrong := native.configure(_world.to_settings())
+	wrong.append_array(native.set_device(_world.device.to_settings(unattended)))
+	wrong.append_array(native.set_tool(ToolReader.describe(tool, units, problems)))
+	if not wrong.is_empty():
+		return []
+	problems = native.start(not _is_lockstep, _world.record_seconds)
+	if not native.is_running():
+		return problems
+	if not _is_lockstep:
+		print("%s: %s" % [_world.name, native.get_statistics().get("scheduling_details", "")])
+	native.refresh()
+	state = native.get_state()
+	if _world.device.follows_mouse(unattended):
+		_cursor = HapticHandCursor2D.new()
+		_world.add_child(_cursor, false, Node.INTERNAL_MODE_BACK)
+	return problems
+
+
+## Ends the loop.
+func stop() -> void:
+	if _cursor != null:
+		_cursor.queue_free()
+	neighborhood.clear()
+	native.stop()
+
+
+## One physics tick, after all else has moved. Returns what is wrong.
+func tick(seconds: float) -> PackedStringArray:
+	if not is_instance_valid(tool) or not tool.is_inside_tree():
+		_world.stop()
+		return ["The tool is gone, so the haptic loop was stopped. Call start() with another tool."]
+	# in lock-step the loop's time is the scene's
+	var scale := 1.0 if _is_lockstep else Engine.time_scale
+	if _stall(scale < _LEAST_TIME_SCALE):
+		return []
+	native.refresh()
+	state = native.get_state()
+	var impulses := native.take_impulses()
+	units.set_frame(_world.global_transform)
+	var speed := Vector2(state[Gateway.State.VELOCITY_X], state[Gateway.State.VELOCITY_Y]).length()
+	var place := units.point_to_canvas(state[Gateway.State.TOOL_X], state[Gateway.State.TOOL_Y])
+	var problems := neighborhood.publish(
+		_world.get_world_2d().direct_space_state,
+		place,
+		neighborhood.reach(ToolReader.extent(tool), speed, seconds / scale),
+		tool.collision_mask,
+		seconds,
+		scale,
+		_gravity(scale)
+	)
+	# after the snapshot: it tells of bodies that have not felt these yet
+	neighborhood.give(impulses, scale)
+	if _is_lockstep:
+		native.advance(seconds)
+		show()
+	return problems
+
+
+## Brings the newest report into the scene.
+func show() -> void:
+	native.refresh()
+	state = native.get_state()
+	if is_instance_valid(tool) and tool.is_inside_tree():
+		tool.global_transform = units.pose_to_canvas(
+			state[Gateway.State.TOOL_X],
+			state[Gateway.State.TOOL_Y],
+			state[Gateway.State.TOOL_ANGLE]
+		)
+		_emit_events()
+	_emit_faults()
+
+
+## What touches now.
+func get_contacts() -> Array[HapticContact]:
+	var contacts: Array[HapticContact] = []
+	for report: Dictionary in native.get_contacts():
+		var body := neighborhood.body_of(report["body"] as int)
+		contacts.append(HapticContact.from_report(report, units, body))
+	return contacts
+
+
+## Where a pointing hand wants the grip, on the canvas.
+func aim(point: Vector2, angle: float) -> void:
+	var at := units.point_to_meters(point)
+	native.aim(at[0], at[1], units.angle_to_native(angle))
+
+
+# pauses the output while time nearly stands; says whether it does
+func _stall(stalled: bool) -> bool:
+	if stalled != _is_stalled:
+		_is_stalled = stalled
+		native.set_paused(stalled)
+	return stalled
+
+
+# the loop runs in real time: velocities of the scene go with its time scale, accelerations twice
+func _gravity(scale: float) -> PackedFloat64Array:
+	var pull := PackedFloat64Array([0.0, 0.0])
+	match _world.gravity_source:
+		HapticWorld2D.GravitySource.PROJECT:
+			var space := _world.get_world_2d().space
+			var strength: float = PhysicsServer2D.area_get_param(
+				space, PhysicsServer2D.AREA_PARAM_GRAVITY
+			)
+			var direction: Vector2 = PhysicsServer2D.area_get_param(
+				space, PhysicsServer2D.AREA_PARAM_GRAVITY_VECTOR
+			)
+			pull = units.velocity_to_meters(strength * direction)
+		HapticWorld2D.GravitySource.CUSTOM:
+			pull = units.vector_to_native(_world.gravity)
+	pull[0] *= scale * scale
+	pull[1] *= scale * scale
+	return pull
+
+
+func _emit_events() -> void:
+	for event: Dictionary in native.take_events():
+		var body := neighborhood.body_of(event["body"] as int)
+		var contact := HapticContact.from_report(event, units, body)
+		match event["kind"]:
+			"began":
+				tool.contact_began.emit(contact)
+			"ended":
+				tool.contact_ended.emit(contact)
+			"impact":
+				tool.impacted.emit(contact, event["impulse"] as float)
+			"slip":
+				tool.slip_began.emit(contact)
+
+
+func _emit_faults() -> void:
+	if state[Gateway.State.FAULTS] == 0.0 and _faults.is_empty():
+		return
+	var now := native.get_faults()
+	for fault: String in now:
+		if not fault in _faults:
+			_world.fault_raised.emit(fault)
+	_faults = now
