@@ -21,8 +21,11 @@ static func of_file(file_path: String, file_script: GDScript) -> Array:
 	var suites: Array = [_make(file_path, "", file_script)]
 	var constants: Dictionary = file_script.get_script_constant_map()
 	for constant: String in constants:
-		var inner_script: GDScript = constants[constant] as GDScript
-		if inner_script != null and constant.begins_with("Test") and is_suite(inner_script):
+		# a constant may be a number, which cannot be cast
+		if not constants[constant] is GDScript:
+			continue
+		var inner_script: GDScript = constants[constant]
+		if constant.begins_with("Test") and is_suite(inner_script):
 			suites.append(_make(file_path, constant, inner_script))
 	return suites.filter(func(suite: Variant) -> bool: return not suite.tests.is_empty())
 
