@@ -10,7 +10,7 @@
 namespace haptics {
 
 /// Chains of at least this many bodies use the four-lane kernel.
-inline constexpr int k_split_chain_minimum = 8;
+inline constexpr int k_split_chain_minimum = 5;
 
 /// Length of the body arrays: ground, 64 bodies, and padding that keeps the arrays off power-of-two spacing.
 inline constexpr int k_body_slots = 68;
