@@ -6,9 +6,10 @@
 ///
 /// Cores overlapping: the direction can only come from a face. Which one is a matter of history, not of
 /// depth: a tool deep in a thin wall is nearer to the far side. So the face of the last step stays as long as
-/// the other piece is behind it and in front of its extent; it is handed over only to faces within k_handover
-/// of its normal that are less deep, and among the faces of the same owner only once the deepest vertex has
-/// passed the end of the face. Without a history the least deep face is taken.
+/// the other piece is behind it and in front of its extent. It is handed over only to a less deep face within
+/// k_handover of its normal: to the edge of the other piece that faces it or, once the deepest vertex has
+/// passed the end of the face, to the next face of the same owner. Without a history the least deep face is
+/// taken.
 
 #include "pair_contact.hpp"
 
@@ -194,16 +195,14 @@ bool kept_face(const Pair& pair, Face& face, FaceSeparation& best, FacePoints& p
     const bool past_start = u < -owner.shape->face_before[k];
     const bool past_end = u > length + owner.shape->face_after[k];
     const int own_face = best.face;
+    const int facing = points.edge;
     for (const Face side : {Face::of_b, Face::of_a}) {
         const PlacedConvex& candidate_owner = pair.owner(side);
         for (int edge = 0; edge < candidate_owner.faces(); ++edge) {
-            if (side == hint.face) {
-                const bool reached = (past_start && edge == owner.before(own_face)) ||
-                                     (past_end && edge == owner.next(own_face));
-                if (!reached)
-                    continue;
-            }
-            if (pair.normal(side, edge).dot(n) < k_handover)
+            const bool reached = side == hint.face ? (past_start && edge == owner.before(own_face)) ||
+                                                         (past_end && edge == owner.next(own_face))
+                                                   : edge == facing;
+            if (!reached || pair.normal(side, edge).dot(n) < k_handover)
                 continue;
             const FaceSeparation s = face_separation(candidate_owner, edge, pair.other(side));
             FacePoints candidate;

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 namespace haptics::contact {
 namespace {
@@ -103,7 +104,7 @@ void DraftList::add(const Draft& added) {
         if (leads(added, present)) {
             Draft merged = added;
             join(merged.patch, present.patch);
-            present = merged;
+            present = std::move(merged);
         } else {
             join(present.patch, added.patch);
         }

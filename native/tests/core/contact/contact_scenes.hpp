@@ -5,6 +5,7 @@
 #include <haptics/core/contact/contact.hpp>
 #include <haptics/core/geometry/shapes.hpp>
 
+#include <algorithm>
 #include <initializer_list>
 #include <memory>
 
@@ -28,6 +29,11 @@ inline Body& add_body(BodySet& set, std::uint64_t id, BodyKind kind, const Pose&
         piece.convex = convex;
     }
     return body;
+}
+
+/// Smallest gap of a patch, m.
+inline double lowest_gap(const Patch& patch) {
+    return patch.point_count > 1 ? std::min(patch.point[0].gap, patch.point[1].gap) : patch.point[0].gap;
 }
 
 /// An empty set on the heap (sets are large).

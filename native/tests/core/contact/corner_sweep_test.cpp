@@ -38,7 +38,7 @@ TEST_CASE("around a rounded corner the normal turns by at most motion over radiu
             detect_patches(*tool, *set, settings, patches, patches);
             REQUIRE(patches.count == 1);
             Patch& patch = patches.patch[0];
-            const double low = std::min(patch.point[0].gap, patch.point[patch.point_count - 1].gap);
+            const double low = lowest_gap(patch);
             if (i > 20) {
                 const double motion = (pose.head<2>() - center).norm();
                 const double turn = angle_between(last, patch.normal);

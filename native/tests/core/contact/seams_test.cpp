@@ -187,8 +187,7 @@ TEST_CASE(
             const Patch& patch = patches.patch[0];
             REQUIRE(std::abs(patch.normal.x()) < 1e-9);
             REQUIRE(patch.memory.age >= 1);
-            REQUIRE(std::min(patch.point[0].gap, patch.point[patch.point_count - 1].gap) ==
-                    doctest::Approx(-depth).epsilon(1e-6));
+            REQUIRE(lowest_gap(patch) == doctest::Approx(-depth).epsilon(1e-6));
             ++patches.patch[0].memory.age;
             x += speed * settings.step;
         }

@@ -83,7 +83,7 @@ TEST_CASE(
                     REQUIRE(patches.count == 1);
                     const Patch& patch = patches.patch[0];
                     REQUIRE(patch.normal.y() > 0.98);
-                    const double low = std::min(patch.point[0].gap, patch.point[patch.point_count - 1].gap);
+                    const double low = lowest_gap(patch);
                     if (i > 0)
                         REQUIRE(low < -0.5 * depth);
                     if (i <= 300)
@@ -139,4 +139,29 @@ TEST_CASE("a tool that is put into a wall is pushed out the shortest way, throug
     REQUIRE(patches.count == 1);
     CHECK(patches.patch[0].normal.y() == doctest::Approx(1.0));
     CHECK(patches.patch[0].point[0].gap == doctest::Approx(-0.004));
+}
+
+TEST_CASE("a thin blade pressed 16 mm deep over a post feels the post through its own lower face") {
+    auto set = make_set();
+    add_body(*set, 1, BodyKind::fixed, Pose{0, -0.05, 0}, {make_box(Vec2{0, 0}, Vec2{0.002, 0.1}, 0.0003)});
+    for (const double tilt : {0.0, 0.3, -0.3}) {
+        auto tool = make_set();
+        add_body(*tool, 0, BodyKind::tool, Pose{0, 0, 0}, {make_box(Vec2{0, 0}, Vec2{0.04, 0.001})});
+        const Vec2 along = rotate(tilt, Vec2{1, 0});
+        const Vec2 up = perpendicular(along);
+        PatchList patches;
+        for (int i = -5; i <= 160; ++i) {
+            CAPTURE(tilt);
+            CAPTURE(i);
+            // the post is 15 mm from the middle of the blade
+            const Vec2 center = 0.015 * along + (0.0005 - 1e-4 * i) * up;
+            tool->body[0].pose = Pose{center.x(), center.y(), tilt};
+            detect_patches(*tool, *set, {}, patches, patches);
+            REQUIRE(patches.count == 1);
+            const Patch& patch = patches.patch[0];
+            REQUIRE(patch.normal.dot(up) > 0.999);
+            REQUIRE(lowest_gap(patch) <= -1e-4 * i + 5e-4);
+            REQUIRE(lowest_gap(patch) >= -1e-4 * i - 5e-4);
+        }
+    }
 }

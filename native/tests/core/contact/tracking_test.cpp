@@ -224,7 +224,7 @@ TEST_CASE(
             detect_patches(*tool, *set, {}, patches, patches);
             for (int k = 0; k < patches.count; ++k) {
                 const Patch& patch = patches.patch[static_cast<std::size_t>(k)];
-                const double low = std::min(patch.point[0].gap, patch.point[patch.point_count - 1].gap);
+                const double low = lowest_gap(patch);
                 REQUIRE(std::max(std::abs(patch.normal.x()), std::abs(patch.normal.y())) ==
                         doctest::Approx(1.0));
                 REQUIRE(low > -0.003);
