@@ -85,6 +85,10 @@ prepare_home() {
     # the place of our cache must not move for what Godot starts
     export GODOT_HAPTICS_CACHE=$cache_dir
     mkdir -p "$XDG_DATA_HOME" "$XDG_CONFIG_HOME" "$XDG_CACHE_HOME"
+    # a machine without fonts has no configuration of them, which the engine would report as an error
+    if [[ $godot_kind == private && ! -e /etc/fonts/fonts.conf ]]; then
+        export FONTCONFIG_PATH=${FONTCONFIG_PATH:-$cache_dir/godot/etc/fonts}
+    fi
 }
 
 has_gpu() { compgen -G '/dev/dri/renderD*' >/dev/null || [[ -e /dev/nvidia0 || -e /dev/dxg ]]; }
