@@ -73,9 +73,16 @@ Session::Session(const SessionSettings& settings, const Model& model, const Outp
 }
 
 void Session::hold(bool held) {
+    if (held && grasp_ == 0.0)
+        grab_offset_ = grip_pose(model_->tool.grip, data_->pose) - handle_;
     held_ = held;
-    grab_offset_ = grip_pose(model_->tool.grip, data_->pose) - handle_;
     impulses_.drop();
+}
+
+void Session::grasp() {
+    const double change = settings_.step / k_grasp_time;
+    grasping_ = std::clamp(grasping_ + (held_ ? change : -change), 0.0, 1.0);
+    grasp_ = grasping_ * grasping_ * (3.0 - 2.0 * grasping_); // no kink at either end
 }
 
 void Session::arm() {
@@ -97,7 +104,7 @@ Mat3 Session::loop_mobility() const {
 }
 
 double Session::stored_energy() const {
-    return output_.stored_energy + (held_ ? spring_energy(gains_.stiffness, output_.coupling) : 0.0);
+    return output_.stored_energy + (grasp_ > 0.0 ? spring_energy(gains_.stiffness, output_.coupling) : 0.0);
 }
 
 void Session::read_device() {
@@ -123,32 +130,33 @@ void Session::run_model() {
         return;
     }
     HandInput hand;
-    hand.held = held_;
+    hand.held = grasp_ > 0.0;
     hand.target = handle_ + grab_offset_ + h * handle_velocity_;
     hand.target_velocity = handle_velocity_;
     hand.stiffness = gains_.stiffness;
     hand.damping = gains_.damping;
     hand.max_force = gate_.limits().max_force * settings_.mapping.scale;
     hand.max_torque = gate_.limits().max_torque;
-    hand.share = share_;
+    hand.share = share_ * grasp_;
     combined_ = combined_mass(mobility_, device_mass_);
-    if (held_ && settings_.coupling == Coupling::four_channel)
-        hand.force = share_ * (combined_ * mobility_ * hand_force_);
+    if (settings_.coupling == Coupling::four_channel)
+        hand.force = hand.share * (combined_ * mobility_ * hand_force_);
     haptics::step(*model_, *data_, hand, h, output_);
     mobility_ = output_.grip_mobility;
 }
 
 Wrench Session::command() {
-    if (!held_ && settings_.coupling != Coupling::direct) {
+    if (grasp_ == 0.0) {
         impulses_.drop();
         return Wrench::Zero();
     }
     if (settings_.coupling == Coupling::direct)
-        return output_.environment;
+        return grasp_ * output_.environment;
     Wrench force = -output_.full_coupling;
     if (settings_.coupling == Coupling::four_channel)
         force += combined_ * output_.grip_acceleration;
-    if (!output_.grip_velocity_jump.isZero(0.0))
+    force *= grasp_;
+    if (held_ && !output_.grip_velocity_jump.isZero(0.0))
         impulses_.demand(device_mass_ * output_.grip_velocity_jump);
     if (output_.contacts == 0 && output_.colliding == 0 && output_.grip_velocity_jump.isZero(0.0))
         impulses_.drop();
@@ -165,12 +173,15 @@ void Session::step() {
         ledger_.book(reading_.pose, stored_energy(), output_.source_work);
     }
     device_mass_ = settings_.mapping.mass_to_scene(device_.handle_mass(reading_.pose));
+    grasp();
     run_model();
     const Wrench wanted = settings_.mapping.wrench_to_device(command());
     const Twist device_twist = settings_.mapping.twist_to_device(handle_velocity_);
     if (arm_wanted_ && !gate_.armed() && gate_.faults() == Fault::none) {
         arm_result_ = gate_.arm(output_.contacts > 0);
         if (arm_result_ == ArmResult::armed) {
+            grasp_ = 0.0;
+            grasping_ = 0.0;
             hold(held_); // the coupling starts without tension
             ledger_.reset(reading_.pose, stored_energy());
         }

@@ -1,8 +1,8 @@
 // Collisions: which contacts take part, and what their impulses do to the tool, to its movable neighbors and to the hand.
 //
-// A point that was apart takes part when it has closed and still approaches; so does a point of a patch that overlaps without having been in contact
-// (a fast motion met the spring first). Points in continuous contact that approach take part with restitution 0, so that the impulse of a
-// neighbor is passed on and not let through. The restitution of a hit slower than the collision speed is 0 as well.
+// A collision happens where a point that was apart has closed and still approaches, or where a patch overlaps without having been in contact (a fast
+// motion met the spring first). All other points that touch take part with restitution 0, whatever their motion: the impulse of a
+// neighbor may close a contact that rests or opens. The restitution of a hit slower than the collision speed is 0 as well.
 
 #include "internal.hpp"
 
@@ -49,10 +49,10 @@ bool collide(const Model& model, Data& data, StepOutput& output) {
     bool hit = false;
     for (int i = 0; i < s.points && count < k_max_collision_contacts; ++i) {
         const PointRow& p = s.point[static_cast<std::size_t>(i)];
-        if (p.gap > k_closed || rate(s, i) >= 0.0)
+        if (p.gap > k_closed)
             continue;
         chosen[static_cast<std::size_t>(count++)] = i;
-        hit = hit || may_collide(s, p);
+        hit = hit || (may_collide(s, p) && rate(s, i) < 0.0);
     }
     if (!hit)
         return false;
@@ -87,7 +87,7 @@ bool collide(const Model& model, Data& data, StepOutput& output) {
         PointRow& p = s.point[static_cast<std::size_t>(i)];
         PatchRow& t = s.row[static_cast<std::size_t>(p.patch)];
         const double normal = data.solution.normal_impulse(c);
-        if (may_collide(s, p)) {
+        if (normal != 0.0 && may_collide(s, p)) {
             t.collided = true;
             t.impulse += std::abs(normal);
         }

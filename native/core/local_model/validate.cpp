@@ -5,12 +5,14 @@ namespace haptics {
 std::vector<FigureError> validate(const Surface& s) {
     FigureCheck check("surface.");
     constexpr double k_most = 1e12;
-    if (!(std::isinf(s.stiffness) && s.stiffness > 0.0))
-        check.range("stiffness", s.stiffness, 0.0, k_most, "N/m", "The paper's wall has 15000 N/m.");
-    if (!(std::isinf(s.damping) && s.damping > 0.0))
-        check.range("damping", s.damping, 0.0, k_most, "N s/m", "The paper's wall has 20 N s/m.");
-    check.range("static_friction", s.static_friction, 0.0, 100.0, "(no unit)", "Most materials lie between 0.1 and 1.");
-    if (check.range("dynamic_friction", s.dynamic_friction, 0.0, 100.0, "(no unit)", "Most materials lie between 0.1 and 1.") &&
+    // infinity leaves the figure to the partner
+    const auto range = [&check](const char* name, double value, double most, const char* unit, const char* remedy) {
+        return (std::isinf(value) && value > 0.0) || check.range(name, value, 0.0, most, unit, remedy);
+    };
+    range("stiffness", s.stiffness, k_most, "N/m", "The paper's wall has 15000 N/m.");
+    range("damping", s.damping, k_most, "N s/m", "The paper's wall has 20 N s/m.");
+    range("static_friction", s.static_friction, 100.0, "(no unit)", "Most materials lie between 0.1 and 1.");
+    if (range("dynamic_friction", s.dynamic_friction, 100.0, "(no unit)", "Most materials lie between 0.1 and 1.") &&
         s.dynamic_friction > s.static_friction)
         check.inconsistent("dynamic_friction", s.dynamic_friction, 0.0, s.static_friction, "(no unit)",
                            "Make it at most static_friction: sliding never holds better than sticking.");

@@ -10,17 +10,6 @@ using namespace godot;
 
 namespace {
 
-// a tool whose surface is not given leaves the law of what it touches unchanged
-Surface neutral_surface() {
-    Surface s;
-    s.stiffness = std::numeric_limits<double>::infinity();
-    s.damping = std::numeric_limits<double>::infinity();
-    s.static_friction = 1.0;
-    s.dynamic_friction = 1.0;
-    s.restitution = 0.0;
-    return s;
-}
-
 // largest error of a reading per coordinate, for the velocity estimate
 Vec3 reading_error(const SimulatedPantographOptions& o) {
     switch (o.encoder_model) {

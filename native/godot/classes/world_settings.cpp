@@ -94,6 +94,7 @@ WorldSettings read_world_settings(const Dictionary& from, Problems& problems) {
     w.session.mapping.scale = r.number("mapping_scale", w.session.mapping.scale);
     w.session.mapping.rotation = r.number("mapping_rotation", w.session.mapping.rotation);
     w.session.mapping.offset = r.vec3("mapping_offset", w.session.mapping.offset);
+    w.session.velocity_window = static_cast<int>(r.number("velocity_window", w.session.velocity_window));
     w.session.arm_at_start = r.flag("arm_at_start", w.session.arm_at_start);
     w.session.hold_at_start = r.flag("hold_at_start", w.session.hold_at_start);
     w.model.contact_mode = r.choice("contact", w.model.contact_mode,

@@ -15,16 +15,6 @@ inline Surface paper_surface() {
     return s;
 }
 
-/// A surface that leaves the partner's law unchanged.
-inline Surface hard_surface() {
-    Surface s;
-    s.stiffness = std::numeric_limits<double>::infinity();
-    s.damping = std::numeric_limits<double>::infinity();
-    s.static_friction = 0.0;
-    s.dynamic_friction = 0.0;
-    return s;
-}
-
 inline std::int32_t add_body(BodySet& set, std::uint64_t id, BodyKind kind, const Surface& surface,
                              const Pose& pose) {
     Body& b = set.body[static_cast<std::size_t>(set.body_count)];
@@ -51,7 +41,7 @@ inline Model box_tool(double mass = 0.3) {
     Model m;
     m.tool.mass = mass;
     m.tool.inertia = mass * (0.04 * 0.04 + 0.02 * 0.02) / 12.0;
-    add_body(m.tool.shape, 0, BodyKind::tool, hard_surface(), Pose::Zero());
+    add_body(m.tool.shape, 0, BodyKind::tool, neutral_surface(), Pose::Zero());
     add_piece(m.tool.shape, make_box(Vec2::Zero(), Vec2(0.04, 0.02)));
     return m;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace haptics {
 
@@ -20,9 +21,14 @@ struct Surface {
     double restitution{0.0};
 };
 
-/// Two springs that press on each other act in series, so their compliances add; an infinitely hard partner leaves the other as
-/// it is. Dampers likewise. Friction is the geometric mean and restitution the larger of the two (the rule of most engines: a
-/// smooth partner makes any pair smooth, and a bouncy one makes any pair bouncy).
+/// The surface that leaves every partner's law as it is: that of a tool whose surface nobody set.
+inline Surface neutral_surface() {
+    constexpr double k_infinite = std::numeric_limits<double>::infinity();
+    return {k_infinite, k_infinite, k_infinite, k_infinite, 0.0};
+}
+
+/// Two springs that press on each other act in series, so their compliances add; dampers likewise. The smoother side decides the friction, the
+/// livelier one the restitution. So infinite stiffness, damping and friction with restitution 0 leave the partner's law as it is.
 inline Surface combine(const Surface& a, const Surface& b) {
     const auto series = [](double p, double q) {
         if (std::isinf(p))
@@ -32,7 +38,7 @@ inline Surface combine(const Surface& a, const Surface& b) {
         return p + q > 0.0 ? p * q / (p + q) : 0.0;
     };
     return {series(a.stiffness, b.stiffness), series(a.damping, b.damping),
-            std::sqrt(a.static_friction * b.static_friction), std::sqrt(a.dynamic_friction * b.dynamic_friction),
+            std::min(a.static_friction, b.static_friction), std::min(a.dynamic_friction, b.dynamic_friction),
             std::max(a.restitution, b.restitution)};
 }
 

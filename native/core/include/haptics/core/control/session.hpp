@@ -51,6 +51,9 @@ class Session {
     /// One step of the loop's period. Allocation-free, bounded, never throws.
     void step();
 
+    /// Taking hold and letting go take this long, s.
+    static constexpr double k_grasp_time = 0.1;
+
     /// The hand takes hold of the tool (the offset between handle and grip freezes, so the force starts at zero) or lets go.
     void hold(bool held);
     /// Asks the gate to arm; the answer is in the next report's `armed` and in `arm_result()`.
@@ -77,6 +80,7 @@ class Session {
   private:
     [[nodiscard]] Mat3 loop_mobility() const;
     [[nodiscard]] double stored_energy() const;
+    void grasp();
     void read_device();
     void run_model();
     [[nodiscard]] Wrench command();
@@ -106,6 +110,9 @@ class Session {
     /// Part of the last command that the gate let through.
     double share_{0.0};
     bool held_{false};
+    /// How firmly the hand holds, 0..1: taking hold and letting go fade the coupling, so that no force jumps.
+    double grasp_{0.0};
+    double grasping_{0.0};
     bool fresh_{false};
     bool missing_{false};
     bool arm_wanted_{false};
