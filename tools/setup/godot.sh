@@ -99,12 +99,16 @@ prepare_drawing() {
     godot_arguments=()
     [[ $godot_kind == private && -n ${DISPLAY:-}${WAYLAND_DISPLAY:-} && " $* " != *" --headless "* ]] || return 0
     local prefix=$cache_dir/godot
+    # data that the X libraries look for in the system's folders
+    [[ -e /usr/share/X11/locale ]] || export XLOCALEDIR=${XLOCALEDIR:-$prefix/usr/share/X11/locale}
+    [[ -e /usr/share/X11/xkb ]] || export XKB_CONFIG_ROOT=${XKB_CONFIG_ROOT:-$prefix/usr/share/X11/xkb}
     export LIBGL_DRIVERS_PATH=${LIBGL_DRIVERS_PATH:-$prefix/usr/lib/x86_64-linux-gnu/dri}
     export __EGL_VENDOR_LIBRARY_DIRS=${__EGL_VENDOR_LIBRARY_DIRS:-$prefix/usr/share/glvnd/egl_vendor.d:/usr/share/glvnd/egl_vendor.d:/etc/glvnd/egl_vendor.d}
     export GBM_BACKENDS_PATH=${GBM_BACKENDS_PATH:-$prefix/usr/lib/x86_64-linux-gnu/gbm}
     if ! has_gpu; then
+        # through EGL: a screenless X server may lack what GLX needs
         export LIBGL_ALWAYS_SOFTWARE=${LIBGL_ALWAYS_SOFTWARE:-1}
-        [[ " $* " == *" --rendering-driver "* ]] || godot_arguments+=(--rendering-driver opengl3)
+        [[ " $* " == *" --rendering-driver "* ]] || godot_arguments+=(--rendering-driver opengl3_es)
     fi
     # no sound card and no sound server: the engine would report an error at every start
     if [[ " $* " != *" --audio-driver "* && ! -e /dev/snd/seq && -z ${PULSE_SERVER:-} && ! -e ${XDG_RUNTIME_DIR:-/none}/pulse ]]; then
