@@ -115,9 +115,9 @@ func _build() -> void:
 	_help_label = _label(help, 14, _QUIET)
 	_help_label.horizontal_alignment = HORIZONTAL_ALIGNMENT_RIGHT
 	_help_label.set_anchors_and_offsets_preset(Control.PRESET_BOTTOM_WIDE)
-	_help_label.offset_top = -40.0
+	_help_label.offset_top = -32.0
 	_help_label.offset_right = -40.0
-	_help_label.offset_bottom = -14.0
+	_help_label.offset_bottom = -12.0
 	add_child(_help_label)
 	_build_legend()
 	_fault_label = _label("", 18, _BAD)
@@ -131,7 +131,8 @@ func _build_legend() -> void:
 	var legend := HBoxContainer.new()
 	legend.set_anchors_and_offsets_preset(Control.PRESET_BOTTOM_LEFT)
 	legend.offset_left = 40.0
-	legend.offset_top = -38.0
+	legend.offset_top = -32.0
+	legend.offset_bottom = -12.0
 	legend.add_theme_constant_override("separation", 8)
 	for entry: Array in [["surface on tool", _CONTACT], ["felt by the hand", _HAND]]:
 		var swatch := ColorRect.new()
