@@ -31,18 +31,13 @@ constexpr double k_one_point = 1e-8;
 /// Gaps that differ by less are equal, m.
 constexpr double k_tie = 1e-12;
 
-bool same_surface(const Surface& p, const Surface& q) {
-    return p.stiffness == q.stiffness && p.damping == q.damping && p.static_friction == q.static_friction &&
-           p.dynamic_friction == q.dynamic_friction && p.restitution == q.restitution;
-}
-
 bool one_patch(const Draft& p, const Draft& q) {
     const PatchSide& s = p.patch.side;
     const PatchSide& t = q.patch.side;
     if (s.id_a != t.id_a || s.tool_a != t.tool_a || s.fixed_b != t.fixed_b ||
         (!s.fixed_b && s.id_b != t.id_b))
         return false;
-    if (p.patch.normal.dot(q.patch.normal) < k_same_push || !same_surface(p.surface_b, q.surface_b))
+    if (p.patch.normal.dot(q.patch.normal) < k_same_push || !(p.surface_b == q.surface_b))
         return false;
     const double turn = cross(p.plane_normal, q.plane_normal);
     return std::abs(turn) < k_same_plane_turn && p.plane_normal.dot(q.plane_normal) > 0.0 &&

@@ -8,15 +8,10 @@
 namespace haptics {
 namespace {
 
-bool same(const Surface& p, const Surface& q) {
-    return p.stiffness == q.stiffness && p.damping == q.damping && p.static_friction == q.static_friction &&
-           p.dynamic_friction == q.dynamic_friction && p.restitution == q.restitution;
-}
-
 /// Index of the surface among those seen.
 int surface_index(std::vector<Surface>& seen, const Surface& surface) {
     for (std::size_t i = 0; i < seen.size(); ++i) {
-        if (same(seen[i], surface))
+        if (seen[i] == surface)
             return static_cast<int>(i);
     }
     seen.push_back(surface);

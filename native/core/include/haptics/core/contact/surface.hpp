@@ -19,6 +19,9 @@ struct Surface {
     double dynamic_friction{0.0};
     /// Poisson's coefficient of restitution, 0 (dead) to 1 (lossless).
     double restitution{0.0};
+
+    /// Equal in every value: only then two pieces of matter are one to a patch.
+    friend bool operator==(const Surface&, const Surface&) = default;
 };
 
 /// The surface that leaves every partner's law as it is: that of a tool whose surface nobody set.
