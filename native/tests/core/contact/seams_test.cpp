@@ -254,3 +254,25 @@ TEST_CASE("a concave outline cut into pieces is felt as one solid") {
                 doctest::Approx(0.02));
     }
 }
+
+TEST_CASE("marking a solid twice, or first each body and then all, changes nothing") {
+    Random random(9);
+    const Wall wall{-0.05, 0.05, 0.001};
+    for (int trial = 0; trial < 50; ++trial) {
+        const auto once = cut_wall(wall, Pose{0.1, 0.2, 0.3}, random, 0.001);
+        auto twice = std::make_unique<BodySet>(*once);
+        mark_seams(*twice);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(once->piece_count); ++i) {
+            const Convex& p = once->piece[i].convex;
+            const Convex& q = twice->piece[i].convex;
+            CHECK(p.hidden_edges == q.hidden_edges);
+            CHECK(p.ghost_vertices == q.ghost_vertices);
+            CHECK(p.blunt_vertices == q.blunt_vertices);
+            for (std::size_t k = 0; k < static_cast<std::size_t>(p.count); ++k) {
+                CHECK((p.vertex[k] - q.vertex[k]).norm() < 1e-14);
+                CHECK(std::abs(p.face_before[k] - q.face_before[k]) < 1e-14);
+                CHECK(std::abs(p.face_after[k] - q.face_after[k]) < 1e-14);
+            }
+        }
+    }
+}
