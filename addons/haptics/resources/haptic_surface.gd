@@ -4,9 +4,9 @@ class_name HapticSurface
 extends Resource
 ## How a surface feels: its spring, its damper, its friction and its bounce.
 ##
-## Where a tool with a surface of its own touches, springs act in series, dampers likewise;
-## friction is the geometric mean of the two, restitution the larger. A tool without one leaves the
-## surface as it is. The defaults are the wall of Constantinescu, Salcudean and Croft (2003).
+## Where a tool with a surface of its own touches, springs act in series, dampers likewise; the
+## smoother side decides the friction, the livelier one the restitution. A tool without one leaves
+## the surface as it is. The defaults are the wall of Constantinescu, Salcudean and Croft (2003).
 
 ## Sets of figures to start from.
 enum Preset {
