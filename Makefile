@@ -1,14 +1,14 @@
 # Thin: every command is a script in tools/ or a CMake preset.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help demo test editor run build bench lint format clean
+.PHONY: help demo test editor run build bench experiment1 lint format clean
 
 PRESET ?= release
 OUT ?= build/run
 SECONDS ?= 5
 
 help: ## this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z0-9]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 	@echo
 	@echo "  Missing tools are fetched once into $${GODOT_HAPTICS_CACHE:-$${XDG_CACHE_HOME:-~/.cache}/godot-haptics}; GODOT=/path names a Godot of yours."
 
@@ -26,6 +26,9 @@ run: ## a scene headless, measured: SCENE=res://… [SECONDS=5] [LOCKSTEP=1] [OU
 
 build: ## the native library and tests (PRESET=release|debug|asan|tsan|clang)
 	@tools/run/build $(PRESET)
+
+experiment1: ## experiment 1 of the paper: CSV, picture and table in build/experiment1
+	@tools/run/experiment1
 
 bench: ## the benchmarks (ARGS="--benchmark_filter=…"); JSON in build/bench.json
 	@tools/run/bench $(ARGS)

@@ -133,6 +133,8 @@ var coupling_rotation_stiffness: float = 0.0
 ## Damping of the coupling in rotation, N m s/rad; 0 chooses it.
 @export_range(0.0, 1.0, 0.0001, "or_greater", "suffix:N m s/rad")
 var coupling_rotation_damping: float = 0.0
+## Longest window of the velocity estimate, samples: longer is quieter and lags more.
+@export_range(1, 63) var velocity_window: int = 2
 
 @export_group("Gravity")
 ## Where the gravity of the tool and of movable bodies around it comes from.
@@ -390,6 +392,7 @@ func to_settings() -> Dictionary:
 		PackedFloat64Array([coupling_stiffness, coupling_stiffness, coupling_rotation_stiffness]),
 		"coupling_damping":
 		PackedFloat64Array([coupling_damping, coupling_damping, coupling_rotation_damping]),
+		"velocity_window": velocity_window,
 		"mapping_scale": mapping_scale,
 		"mapping_rotation": -mapping_rotation,
 		"arm_at_start": arm_at_start,

@@ -99,8 +99,13 @@ void Session::shut_off() {
     device_.write(Wrench::Zero());
 }
 
+// Both force channels or none: the environment's alone would let the hand feel the contact once fed forward and once through the spring.
+bool Session::feeds_forward() const {
+    return settings_.coupling == Coupling::four_channel && reading_.has_hand_force;
+}
+
 Mat3 Session::loop_mobility() const {
-    return settings_.coupling == Coupling::four_channel ? mobility_ : Mat3(Mat3::Zero());
+    return feeds_forward() ? mobility_ : Mat3(Mat3::Zero());
 }
 
 double Session::stored_energy() const {
@@ -139,7 +144,7 @@ void Session::run_model() {
     hand.max_torque = gate_.limits().max_torque;
     hand.share = share_ * grasp_;
     combined_ = combined_mass(mobility_, device_mass_);
-    if (settings_.coupling == Coupling::four_channel)
+    if (feeds_forward())
         hand.force = hand.share * (combined_ * mobility_ * hand_force_);
     haptics::step(*model_, *data_, hand, h, output_);
     mobility_ = output_.grip_mobility;
@@ -153,7 +158,7 @@ Wrench Session::command() {
     if (settings_.coupling == Coupling::direct)
         return grasp_ * output_.environment;
     Wrench force = -output_.full_coupling;
-    if (settings_.coupling == Coupling::four_channel)
+    if (feeds_forward())
         force += combined_ * output_.grip_acceleration;
     force *= grasp_;
     if (held_ && !output_.grip_velocity_jump.isZero(0.0))

@@ -210,12 +210,12 @@ BodySpec read_body(const Dictionary& from, const std::string& place, const Surfa
         problems.add(check.take());
     }
     r.finish();
-    if (spec.pieces.size() > 1) {
-        std::vector<SeamPiece> solid;
-        for (Piece& p : spec.pieces)
+    std::vector<SeamPiece> solid;
+    for (Piece& p : spec.pieces)
+        if (!p.one_way)
             solid.push_back({&p.convex, Pose::Zero(), 0});
+    if (solid.size() > 1)
         mark_seams(solid);
-    }
     return spec;
 }
 

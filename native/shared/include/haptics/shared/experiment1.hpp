@@ -24,6 +24,7 @@ struct Experiment1Options {
     /// Multiplies the coupling of a position loop alone (1577 N/m at 500 Hz); damping grows with its root.
     double gain{1.0};
     int velocity_window{1};
+    bool measures_force{true};
     /// Distance from tool to wall at the start, m.
     double distance{0.02};
 };
@@ -37,7 +38,7 @@ struct Experiment1 {
         d.encoder_model = o.encoder > 0.0 ? EncoderModel::handle : EncoderModel::exact;
         d.encoder_resolution = Vec3(o.encoder, o.encoder, 1e-4);
         d.command_delay_steps = o.delay_steps;
-        d.measures_force = true;
+        d.measures_force = o.measures_force;
         d.limit_motors = false;
         d.hand = pushing_hand(Wrench(0.0, -o.push, 0.0), 1.0);
         device = std::make_unique<SimulatedPantograph>(d);

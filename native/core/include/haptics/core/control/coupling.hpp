@@ -9,7 +9,7 @@ namespace haptics {
 
 /// What is exchanged between device and proxy.
 enum class Coupling : std::uint8_t {
-    four_channel,     ///< positions and forces, both ways (the paper's controller)
+    four_channel,     ///< positions and forces, both ways (the paper's controller); positions alone while the device measures no force
     virtual_coupling, ///< positions only: a spring-damper between device and proxy
     direct,           ///< no proxy: contact forces at the device's own pose (baseline)
 };

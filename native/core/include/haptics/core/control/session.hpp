@@ -78,6 +78,7 @@ class Session {
     [[nodiscard]] const Pose& grab_offset() const { return grab_offset_; }
 
   private:
+    [[nodiscard]] bool feeds_forward() const;
     [[nodiscard]] Mat3 loop_mobility() const;
     [[nodiscard]] double stored_energy() const;
     void grasp();

@@ -1,0 +1,104 @@
+// Where experiment 1 tells the two contact models apart, and where it does not. HAPTICS_EXPERIMENT1_TABLE=<file> writes the whole table as
+// Markdown; the test alone looks at its corners.
+
+#include <haptics/shared/experiment1.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iomanip>
+
+using namespace haptics;
+using shared::Experiment1;
+using shared::Experiment1Options;
+
+namespace {
+
+struct Outcome {
+    /// From the first touch until the contact force stays within 0.2 N of the push, s; negative when it never does.
+    double settling{-1.0};
+    /// Peak to peak in the last second: contact force (N) and handle (m).
+    double force_swing{0.0};
+    double handle_swing{0.0};
+    double energy{0.0};
+    double stiffness{0.0};
+};
+
+Outcome run(const Experiment1Options& options) {
+    Experiment1 e(options);
+    const int steps = static_cast<int>(4.0 * options.rate_hz);
+    double touch = -1.0;
+    double unsettled = 0.0;
+    double force[2] = {1e300, -1e300};
+    double handle[2] = {1e300, -1e300};
+    for (int i = 0; i < steps; ++i) {
+        e.session->step();
+        const HapticReport& r = e.session->report();
+        if (touch < 0.0 && r.contacts > 0)
+            touch = r.time;
+        if (std::abs(r.contact.y() - options.push) > 0.2)
+            unsettled = r.time;
+        if (r.time <= 3.0)
+            continue;
+        const double y = e.device->true_pose().y();
+        force[0] = std::min(force[0], r.contact.y());
+        force[1] = std::max(force[1], r.contact.y());
+        handle[0] = std::min(handle[0], y);
+        handle[1] = std::max(handle[1], y);
+    }
+    Outcome o;
+    o.settling = unsettled < 3.0 ? unsettled - touch : -1.0;
+    o.force_swing = force[1] - force[0];
+    o.handle_swing = handle[1] - handle[0];
+    o.energy = e.session->report().energy_injected;
+    o.stiffness = e.session->gains().stiffness.y();
+    return o;
+}
+
+Outcome run(ContactMode contact, double tool, double gain) {
+    Experiment1Options o;
+    o.contact = contact;
+    o.tool_mass = tool;
+    o.gain = gain;
+    return run(o);
+}
+
+void write_table(const char* path) {
+    std::ofstream out(path);
+    out << "| tool kg | coupling N/m | contact | settles s | swing N | swing of the handle µm | energy created mJ |\n"
+           "|---|---|---|---|---|---|---|\n"
+        << std::fixed;
+    for (const double tool : {0.1, 0.3, 1.0})
+        for (const double gain : {1.0 / 3.0, 2.0 / 3.0, 1.0, 1.5})
+            for (const ContactMode contact : {ContactMode::penalty, ContactMode::penalty_impulse}) {
+                const Outcome o = run(contact, tool, gain);
+                out << "| " << std::setprecision(1) << tool << " | " << std::setprecision(0) << o.stiffness << " | "
+                    << (contact == ContactMode::penalty ? "penalty" : "penalty and impulse") << " | ";
+                if (o.settling < 0.0)
+                    out << "never";
+                else
+                    out << std::setprecision(2) << o.settling;
+                out << " | " << std::setprecision(2) << o.force_swing << " | " << std::setprecision(0)
+                    << o.handle_swing * 1e6 << " | " << std::setprecision(2) << o.energy * 1e3 << " |\n";
+            }
+}
+
+} // namespace
+
+TEST_CASE("experiment 1 tells the contact models apart for a heavy tool, and not for a soft coupling") {
+    if (const char* path = std::getenv("HAPTICS_EXPERIMENT1_TABLE"))
+        write_table(path);
+    const Outcome penalty = run(ContactMode::penalty, 1.0, 1.0);
+    const Outcome impulse = run(ContactMode::penalty_impulse, 1.0, 1.0);
+    CHECK(penalty.settling < 0.0);
+    CHECK(impulse.settling > 0.0);
+    CHECK(impulse.force_swing < 0.1);
+    CHECK(penalty.force_swing > 20.0 * impulse.force_swing);
+    // a soft coupling settles either way, with the impulse sooner
+    const Outcome soft_penalty = run(ContactMode::penalty, 0.3, 1.0 / 3.0);
+    const Outcome soft_impulse = run(ContactMode::penalty_impulse, 0.3, 1.0 / 3.0);
+    CHECK(soft_penalty.settling > 0.0);
+    CHECK(soft_impulse.settling < soft_penalty.settling);
+}
