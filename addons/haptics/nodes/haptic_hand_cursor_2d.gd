@@ -36,6 +36,17 @@ func _init() -> void:
 
 
 func _ready() -> void:
+	if _world() == null:
+		push_error(
+			(
+				"%s is not a child of a HapticWorld2D and shows nothing. Remove it: the world makes its own."
+				% get_path()
+			)
+		)
+		set_process(false)
+		set_process_unhandled_input(false)
+		hide()
+		return
 	_first_angle = _world().get_grip().get_rotation()
 	_angle = _first_angle
 

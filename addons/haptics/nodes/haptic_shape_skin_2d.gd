@@ -1,14 +1,18 @@
 @tool
+@icon("res://addons/haptics/icons/haptic_shape_skin_2d.svg")
+class_name HapticShapeSkin2D
 extends Node2D
-## Paints the collision shapes of its parent.
+## Paints the collision shapes of its parent: a quick look for walls, objects and tools.
+##
+## Replace it with sprites when the scene gets its own.
 
 ## Color inside.
-@export var fill: Color = Color(0.82, 0.84, 0.9):
+@export var fill: Color = Color(0.553, 0.647, 0.953, 0.45):
 	set(value):
 		fill = value
 		queue_redraw()
 ## Color of the edge.
-@export var edge: Color = Color.TRANSPARENT:
+@export var edge: Color = Color(0.62, 0.71, 1.0):
 	set(value):
 		edge = value
 		queue_redraw()
