@@ -1,5 +1,5 @@
-#include <haptics/realtime/haptic_runner.hpp>
 #include <haptics/realtime/csv_writer.hpp>
+#include <haptics/realtime/haptic_runner.hpp>
 #include <haptics/realtime/loop_clock.hpp>
 #include <haptics/realtime/run_columns.hpp>
 

@@ -1,6 +1,6 @@
 extends GutTest
-## The paper's first experiment as scenes: with the collision impulse the contact settles at 2 N, with
-## spring and damper alone it keeps bouncing.
+## The paper's first experiment as scenes: with the collision impulse the contact settles at 2 N,
+## with spring and damper alone it keeps bouncing.
 
 const Scene := preload("res://tests/support/haptic_scene.gd")
 const FOLDER := "res://scenes/02_steady_push"

@@ -1,17 +1,20 @@
 // Gains of the coupling.
 //
-// Worst case for the spring between handle and proxy is a proxy that stands still (a hard wall): the device's mass m alone moves on K, B
-// through a loop that samples (the force is held for a step: T/2 on average), computes (one step: T) and takes velocity from
-// differences over n samples (n T/2): tau = (3 + n) T/2 plus the device's own delay. With L(s) = (B s + K) e^(-s tau) / (m s^2), K = m w^2 and
-// B = 2 z m w, the gain crosses one at w_c = w sqrt(2 z^2 + sqrt(4 z^4 + 1)), that is 1.55 w for z = 0.7, where the phase margin is
+// Worst case for the spring between handle and proxy is a proxy that stands still (a hard wall): the device's
+// mass m alone moves on K, B through a loop that samples (the force is held for a step: T/2 on average),
+// computes (one step: T) and takes velocity from differences over n samples (n T/2): tau = (3 + n) T/2 plus
+// the device's own delay. With L(s) = (B s + K) e^(-s tau) / (m s^2), K = m w^2 and B = 2 z m w, the gain
+// crosses one at w_c = w sqrt(2 z^2 + sqrt(4 z^4 + 1)), that is 1.55 w for z = 0.7, where the phase margin is
 // atan(2 z w_c / w) - w_c tau = 65 deg - 1.55 w tau. Asking for 39 deg leaves w tau = 0.29.
-// With four channels the wall's answer to the coupling comes back a second time, fed forward with the weight a = S J_h D^-1 J_h^T (between 0 for
-// a heavy and 1 for a light proxy), so the loop's gain is 1 + a times that of the spring: K = m (0.29 / tau)^2 / (1 + a), and B likewise.
-// For 0.3 kg on both sides at 500 Hz and n = 2 this is 673 N/m and 16.2 N s/m.
+// With four channels the wall's answer to the coupling comes back a second time, fed forward with the weight
+// a = S J_h D^-1 J_h^T (between 0 for a heavy and 1 for a light proxy), so the loop's gain is 1 + a times
+// that of the spring: K = m (0.29 / tau)^2 / (1 + a), and B likewise. For 0.3 kg on both sides at 500 Hz and
+// n = 2 this is 673 N/m and 16.2 N s/m.
 //
-// S form. Device M_d a = F_h + L and proxy D q'' = tau - J_h^T L share the grip, J_h q'' = a, so L = S (J_h D^-1 tau - M_d^-1 F_h) with
-// S = (J_h D^-1 J_h^T + M_d^-1)^-1. The device is fed forward S J_h D^-1 tau, the proxy S J_h D^-1 J_h^T F_h (note 1 - S M_d^-1 =
-// S J_h D^-1 J_h^T). At rest the sum of both equations says (1 + S J_h D^-1 J_h^T)(F_h + F_env) = 0: a steady push gives the push back, whatever the masses.
+// S form. Device M_d a = F_h + L and proxy D q'' = tau - J_h^T L share the grip, J_h q'' = a, so L = S (J_h
+// D^-1 tau - M_d^-1 F_h) with S = (J_h D^-1 J_h^T + M_d^-1)^-1. The device is fed forward S J_h D^-1 tau, the
+// proxy S J_h D^-1 J_h^T F_h (note 1 - S M_d^-1 = S J_h D^-1 J_h^T). At rest the sum of both equations says
+// (1 + S J_h D^-1 J_h^T)(F_h + F_env) = 0: a steady push gives the push back, whatever the masses.
 
 #include <haptics/core/control/coupling.hpp>
 
@@ -19,7 +22,8 @@
 
 namespace haptics {
 
-CouplingGains default_gains(const Mat3& device_mass, const Mat3& mobility, double step, double delay, int velocity_window) {
+CouplingGains default_gains(const Mat3& device_mass, const Mat3& mobility, double step, double delay,
+                            int velocity_window) {
     constexpr double k_frequency = 0.29; // w tau
     constexpr double k_damping_ratio = 0.7;
     const double w = k_frequency / (0.5 * (3.0 + velocity_window) * step + std::max(delay, 0.0));

@@ -1,12 +1,14 @@
 // The haptic step.
 //
-// The gate comes after the model, so what it takes away is known one step late: `share_`, the part of the last command that was let through, scales
-// coupling and hand force in the next step, so that device and proxy always receive opposite forces. The command itself is computed
-// at full share; otherwise the gate's cut would be applied twice.
+// The gate comes after the model, so what it takes away is known one step late: `share_`, the part of the
+// last command that was let through, scales coupling and hand force in the next step, so that device and
+// proxy always receive opposite forces. The command itself is computed at full share; otherwise the gate's
+// cut would be applied twice.
 //
-// Impulses. If device and proxy were one body, a collision that changes the grip's velocity by dv would need M_d dv on the device's side
-// (with the S form: L = S J_h D^-1 P = M_d dv for the combined impulse P). Eq. (7) with the proxy's own inertia gives the same for equal masses,
-// throws a device that is lighter than the proxy back, and hardly stops one that is heavier. So M_d dv is what the hand receives.
+// Impulses. If device and proxy were one body, a collision that changes the grip's velocity by dv would need
+// M_d dv on the device's side (with the S form: L = S J_h D^-1 P = M_d dv for the combined impulse P). Eq.
+// (7) with the proxy's own inertia gives the same for equal masses, throws a device that is lighter than the
+// proxy back, and hardly stops one that is heavier. So M_d dv is what the hand receives.
 
 #include <haptics/core/control/session.hpp>
 
@@ -35,22 +37,27 @@ double spring_energy(const Vec3& stiffness, const Wrench& force) {
 std::vector<FigureError> validate(const SessionSettings& s) {
     FigureCheck check;
     check.range("rate", s.step > 0.0 ? 1.0 / s.step : 0.0, 250.0, 10000.0, "Hz", "1000 Hz is the default.");
-    check.range("mapping.scale", s.mapping.scale, 0.01, 100.0, "m/m", "1 shows the device's motion at its true size.");
+    check.range("mapping.scale", s.mapping.scale, 0.01, 100.0, "m/m",
+                "1 shows the device's motion at its true size.");
     check.range("mapping.rotation", s.mapping.rotation, -10.0, 10.0, "rad", "0 is the default.");
     for (int i = 0; i < 3; ++i)
-        check.range("mapping.offset", s.mapping.offset(i), -100.0, 100.0, "m", "Keep the workspace near the world node.");
+        check.range("mapping.offset", s.mapping.offset(i), -100.0, 100.0, "m",
+                    "Keep the workspace near the world node.");
     for (int i = 0; i < 3; ++i) {
-        check.range("coupling.stiffness", s.gains.stiffness(i), 0.0, 1e9, "N/m", "0 chooses it from device mass and rate.");
-        check.range("coupling.damping", s.gains.damping(i), 0.0, 1e9, "N s/m", "0 chooses it from device mass and rate.");
+        check.range("coupling.stiffness", s.gains.stiffness(i), 0.0, 1e9, "N/m",
+                    "0 chooses it from device mass and rate.");
+        check.range("coupling.damping", s.gains.damping(i), 0.0, 1e9, "N s/m",
+                    "0 chooses it from device mass and rate.");
         check.range("reading_error", s.reading_error(i), 0.0, 0.1, "m", "Half an encoder step.");
     }
-    check.range("velocity_window", static_cast<double>(s.velocity_window), 1.0, 63.0, "samples", "2 is the default.");
+    check.range("velocity_window", static_cast<double>(s.velocity_window), 1.0, 63.0, "samples",
+                "2 is the default.");
     check.range("device_delay", s.device_delay, 0.0, 1.0, "s", "Most devices add less than 0.001 s.");
     return check.take();
 }
 
-Session::Session(const SessionSettings& settings, const Model& model, const OutputGate& gate, DevicePort& device,
-                 const Pose& start)
+Session::Session(const SessionSettings& settings, const Model& model, const OutputGate& gate,
+                 DevicePort& device, const Pose& start)
     : settings_(settings)
     , model_(std::make_unique<Model>(model))
     , data_(std::make_unique<Data>())
@@ -64,7 +71,8 @@ Session::Session(const SessionSettings& settings, const Model& model, const Outp
     device_mass_ = settings_.mapping.mass_to_scene(device_.handle_mass(reading_.pose));
     gains_ = settings_.gains;
     if (gains_.stiffness.isZero(0.0) && gains_.damping.isZero(0.0))
-        gains_ = default_gains(device_mass_, loop_mobility(), settings_.step, settings_.device_delay, settings_.velocity_window);
+        gains_ = default_gains(device_mass_, loop_mobility(), settings_.step, settings_.device_delay,
+                               settings_.velocity_window);
     hold(settings_.hold_at_start);
     report_.grip = grip_pose(model_->tool.grip, data_->pose);
     report_.proxy = data_->pose;
@@ -99,7 +107,8 @@ void Session::shut_off() {
     device_.write(Wrench::Zero());
 }
 
-// Both force channels or none: the environment's alone would let the hand feel the contact once fed forward and once through the spring.
+// Both force channels or none: the environment's alone would let the hand feel the contact once fed forward
+// and once through the spring.
 bool Session::feeds_forward() const {
     return settings_.coupling == Coupling::four_channel && reading_.has_hand_force;
 }
@@ -117,11 +126,13 @@ void Session::read_device() {
     missing_ = !device_.read(reading_);
     fresh_ = !missing_ && (reading_.sequence != last || last == 0);
     if (fresh_) {
-        const Twist twist = reading_.has_velocity ? reading_.velocity : velocity_.update(reading_.pose, settings_.step);
+        const Twist twist =
+            reading_.has_velocity ? reading_.velocity : velocity_.update(reading_.pose, settings_.step);
         handle_velocity_ = settings_.mapping.twist_to_scene(twist);
         handle_ = settings_.mapping.to_scene(reading_.pose);
     }
-    hand_force_ = reading_.has_hand_force ? settings_.mapping.wrench_to_scene(reading_.hand_force) : Wrench(Wrench::Zero());
+    hand_force_ = reading_.has_hand_force ? settings_.mapping.wrench_to_scene(reading_.hand_force)
+                                          : Wrench(Wrench::Zero());
 }
 
 void Session::run_model() {

@@ -1,15 +1,16 @@
 // From patches to rows in configuration space.
 //
-// The system's velocity is v = (tool; movable 1; movable 2; ...), three entries each, about the centers of mass. For a point p with
-// normal n between bodies a and b the gap rate is n . (v_a(p) - v_b(p)). A side that is in the system gives the row
-// [n_x, n_y, r x n] (minus for b); a side that is not gives the number `drive`, so that gap rate = row v - drive.
+// The system's velocity is v = (tool; movable 1; movable 2; ...), three entries each, about the centers of
+// mass. For a point p with normal n between bodies a and b the gap rate is n . (v_a(p) - v_b(p)). A side that
+// is in the system gives the row [n_x, n_y, r x n] (minus for b); a side that is not gives the number
+// `drive`, so that gap rate = row v - drive.
 //
-// Only movables that a chain of contacts joins to the tool are in the system: the others touch nothing that the hand can feel,
-// and the environment moves them.
-
-#include "internal.hpp"
+// Only movables that a chain of contacts joins to the tool are in the system: the others touch nothing that
+// the hand can feel, and the environment moves them.
 
 #include <algorithm>
+
+#include "internal.hpp"
 
 namespace haptics::local {
 namespace {
@@ -52,9 +53,11 @@ void choose_island(Data& data) {
         grew = false;
         for (int i = 0; i < data.patches.count; ++i) {
             const Patch& p = data.patches.patch[static_cast<std::size_t>(i)];
-            for (const auto& [inside, outside] : {std::pair{p.body_a, p.body_b}, std::pair{p.body_b, p.body_a}}) {
+            for (const auto& [inside, outside] :
+                 {std::pair{p.body_a, p.body_b}, std::pair{p.body_b, p.body_a}}) {
                 const std::int32_t m = outside < data.tool.body_count ? -1 : movable_of(data, outside);
-                if (m < 0 || data.movable[static_cast<std::size_t>(m)].row != k_none || first_row(data, inside) == k_none)
+                if (m < 0 || data.movable[static_cast<std::size_t>(m)].row != k_none ||
+                    first_row(data, inside) == k_none)
                     continue;
                 data.movable[static_cast<std::size_t>(m)].row = rows;
                 rows += 3;
@@ -67,8 +70,8 @@ void choose_island(Data& data) {
 
 // adds `sign` times the row of direction `n` at `p` on `body` to `target`, or its velocity to `drive`
 template <typename Row>
-void add_side(const Data& data, std::int32_t body, int row, const Vec2& p, const Vec2& n, double sign, Row&& target,
-              double& drive) {
+void add_side(const Data& data, std::int32_t body, int row, const Vec2& p, const Vec2& n, double sign,
+              Row&& target, double& drive) {
     const Body& b = body_of(data, body);
     const Vec2 arm = p - b.pose.head<2>();
     if (row == k_none) {

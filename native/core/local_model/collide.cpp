@@ -1,12 +1,14 @@
-// Collisions: which contacts take part, and what their impulses do to the tool, to its movable neighbors and to the hand.
+// Collisions: which contacts take part, and what their impulses do to the tool, to its movable neighbors and
+// to the hand.
 //
-// A collision happens where a point that was apart has closed and still approaches, or where a patch overlaps without having been in contact (a fast
-// motion met the spring first). All other points that touch take part with restitution 0, whatever their motion: the impulse of a
-// neighbor may close a contact that rests or opens. The restitution of a hit slower than the collision speed is 0 as well.
-
-#include "internal.hpp"
+// A collision happens where a point that was apart has closed and still approaches, or where a patch overlaps
+// without having been in contact (a fast motion met the spring first). All other points that touch take part
+// with restitution 0, whatever their motion: the impulse of a neighbor may close a contact that rests or
+// opens. The restitution of a hit slower than the collision speed is 0 as well.
 
 #include <algorithm>
+
+#include "internal.hpp"
 
 namespace haptics::local {
 namespace {
@@ -98,18 +100,21 @@ bool collide(const Model& model, Data& data, StepOutput& output) {
                 const Vec3 on_tool = row.template head<3>().transpose();
                 const double before_rate = row.dot(data.collision.velocity) - drive;
                 const double after_rate = row.dot(s.velocity) - drive;
-                return 0.5 * (on_tool.dot(before) - before_rate + on_tool.dot(Vec3(s.velocity.head<3>())) - after_rate);
+                return 0.5 * (on_tool.dot(before) - before_rate + on_tool.dot(Vec3(s.velocity.head<3>())) -
+                              after_rate);
             };
-            output.source_work += normal * other(s.normal_rows.row(i), p.drive) +
-                                  data.solution.tangent_impulse(c) * other(s.tangent_rows.row(p.patch), t.drive);
+            output.source_work +=
+                normal * other(s.normal_rows.row(i), p.drive) +
+                data.solution.tangent_impulse(c) * other(s.tangent_rows.row(p.patch), t.drive);
         }
         if (t.movable < 0)
             continue;
         MovableState& m = data.movable[static_cast<std::size_t>(t.movable)];
         if (m.row < 0)
             continue;
-        m.belief.given += normal * s.normal_rows.row(i).segment<3>(m.row).transpose() +
-                          data.solution.tangent_impulse(c) * s.tangent_rows.row(p.patch).segment<3>(m.row).transpose();
+        m.belief.given +=
+            normal * s.normal_rows.row(i).segment<3>(m.row).transpose() +
+            data.solution.tangent_impulse(c) * s.tangent_rows.row(p.patch).segment<3>(m.row).transpose();
         m.given_step = data.step;
     }
     store_velocities(data);

@@ -1,11 +1,12 @@
 // After the motion: contact states, counts and events of the step.
 //
-// States (section 3.2 of the paper): none -> colliding when a collision was resolved, for one step; then sticking or sliding by Coulomb while
-// the gap is not open; none as soon as every point of the patch is apart. A frictionless contact always slides.
-
-#include "internal.hpp"
+// States (section 3.2 of the paper): none -> colliding when a collision was resolved, for one step; then
+// sticking or sliding by Coulomb while the gap is not open; none as soon as every point of the patch is
+// apart. A frictionless contact always slides.
 
 #include <algorithm>
+
+#include "internal.hpp"
 
 namespace haptics::local {
 namespace {
@@ -21,7 +22,8 @@ ContactState next_state(const ContactSystem& s, const PatchRow& t) {
     return t.mode == FrictionMode::stick ? ContactState::sticking : ContactState::sliding;
 }
 
-void add_event(StepOutput& output, ContactEventKind kind, std::uint64_t body, double time, const Patch* patch, double impulse) {
+void add_event(StepOutput& output, ContactEventKind kind, std::uint64_t body, double time, const Patch* patch,
+               double impulse) {
     if (output.event_count == StepOutput::k_max_events) {
         ++output.events_dropped;
         return;
@@ -31,7 +33,8 @@ void add_event(StepOutput& output, ContactEventKind kind, std::uint64_t body, do
     if (patch != nullptr) {
         Vec2 middle{0.0, 0.0};
         for (int k = 0; k < patch->point_count; ++k)
-            middle += patch->point[static_cast<std::size_t>(k)].weight * patch->point[static_cast<std::size_t>(k)].position;
+            middle += patch->point[static_cast<std::size_t>(k)].weight *
+                      patch->point[static_cast<std::size_t>(k)].position;
         e.position = {middle.x(), middle.y()};
         e.normal = {patch->normal.x(), patch->normal.y()};
     }
@@ -89,7 +92,8 @@ void finish(const Model& model, Data& data, StepOutput& output) {
         output.impulse_size += t.impulse;
         if (p.body_a >= data.tool.body_count || after == ContactState::none)
             continue;
-        const std::uint64_t id = data.neighbors.body[static_cast<std::size_t>(p.body_b - data.tool.body_count)].id;
+        const std::uint64_t id =
+            data.neighbors.body[static_cast<std::size_t>(p.body_b - data.tool.body_count)].id;
         if (!contains(touched, touched_count, id))
             touched[static_cast<std::size_t>(touched_count++)] = id;
         if (!contains(data.touched, data.touched_count, id))

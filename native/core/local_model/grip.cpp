@@ -1,6 +1,6 @@
-// The grip of a rigid tool: point r in body axes, held in position (2 rows) or in position and angle (3 rows).
-// v_grip = v + omega x r, so J_h = [1 0 -r_y; 0 1 r_x; 0 0 1]; a force (F, tau) about the center of mass c has the torque
-// tau - r x F about the grip.
+// The grip of a rigid tool: point r in body axes, held in position (2 rows) or in position and angle (3
+// rows). v_grip = v + omega x r, so J_h = [1 0 -r_y; 0 1 r_x; 0 0 1]; a force (F, tau) about the center of
+// mass c has the torque tau - r x F about the grip.
 
 #include "internal.hpp"
 

@@ -1,24 +1,29 @@
 // Continuous contact over one (sub-)step h.
 //
-// Normal force of a point (eq. 8 with the patch's K, B times the point's share), gap g, gap rate g' = J v - w:
+// Normal force of a point (eq. 8 with the patch's K, B times the point's share), gap g, gap rate g' = J v -
+// w:
 //     f = max(0, -K g - B g')                                   semi-implicit: g, g' at the start of the step
 //     f = max(0, -K (g + h g'+) - B g'+)                        linearly implicit: at its end
-// A point that is apart at the start (g > 0) has no damper in this step: it would pull the brake before the touch.
-// Friction of a patch: a spring of the same K, B between the anchor and the surface, f_t = -K (s + h v_t+) - B v_t+, returned to the
-// Coulomb bound when it exceeds it: mu_s while sticking, mu_d while sliding, f_t = sigma mu_d sum f. The anchor moves only while sliding (then
-// s = -f_t / K), so a sticking contact does not creep.
-// Coupling to the hand, always linearly implicit: F_c = K_c (x_t - x_g - h J_h v+) + B_c (v_t - J_h v+), x_t at the end of the step.
+// A point that is apart at the start (g > 0) has no damper in this step: it would pull the brake before the
+// touch. Friction of a patch: a spring of the same K, B between the anchor and the surface, f_t = -K (s + h
+// v_t+) - B v_t+, returned to the Coulomb bound when it exceeds it: mu_s while sticking, mu_d while sliding,
+// f_t = sigma mu_d sum f. The anchor moves only while sliding (then s = -f_t / K), so a sticking contact does
+// not creep. Coupling to the hand, always linearly implicit: F_c = K_c (x_t - x_g - h J_h v+) + B_c (v_t -
+// J_h v+), x_t at the end of the step.
 //
-// With the set of pressing points and the stick or slip of each patch known, everything is linear in the end velocity v+:
-//     (D + h J_h' (h K_c + B_c) J_h + h sum k J'J) v+ = D v + h (tau + J_h'(K_c (x_t - x_g) + B_c v_t) + sum J'(k w - K g)),  k = h K + B.
-// The set is found by Newton's method on this piecewise linear equation (without friction the residual is the gradient of a convex function,
-// so the true set is its only fixed point). If the set still changes after k_max_iterations, projected Gauss-Seidel with a fixed number of
-// sweeps over the same equations gives the answer and the step reports that it fell back.
-
-#include "internal.hpp"
+// With the set of pressing points and the stick or slip of each patch known, everything is linear in the end
+// velocity v+:
+//     (D + h J_h' (h K_c + B_c) J_h + h sum k J'J) v+ = D v + h (tau + J_h'(K_c (x_t - x_g) + B_c v_t) + sum
+//     J'(k w - K g)),  k = h K + B.
+// The set is found by Newton's method on this piecewise linear equation (without friction the residual is the
+// gradient of a convex function, so the true set is its only fixed point). If the set still changes after
+// k_max_iterations, projected Gauss-Seidel with a fixed number of sweeps over the same equations gives the
+// answer and the step reports that it fell back.
 
 #include <algorithm>
 #include <cmath>
+
+#include "internal.hpp"
 
 namespace haptics::local {
 namespace {
@@ -39,7 +44,9 @@ double tangent_rate(const ContactSystem& s, int patch) {
     return s.tangent_rows.row(patch).dot(s.velocity) - s.row[static_cast<std::size_t>(patch)].drive;
 }
 
-double damping_of(const PointRow& p) { return p.gap > 0.0 ? 0.0 : p.damping; }
+double damping_of(const PointRow& p) {
+    return p.gap > 0.0 ? 0.0 : p.damping;
+}
 
 double normal_sum(const ContactSystem& s, const PatchRow& t) {
     double sum = 0.0;
@@ -48,7 +55,9 @@ double normal_sum(const ContactSystem& s, const PatchRow& t) {
     return sum;
 }
 
-bool has_friction(const PatchRow& t) { return t.static_friction > 0.0; }
+bool has_friction(const PatchRow& t) {
+    return t.static_friction > 0.0;
+}
 
 // one end-of-step solve with fixed matrix
 void solve(const LinearSystem& l, FreedomVector& v) {
@@ -61,7 +70,9 @@ void solve(const LinearSystem& l, FreedomVector& v) {
 }
 
 // Coulomb bound that holds for the patch now: static while sticking, dynamic while sliding
-double friction_bound(const PatchRow& t) { return t.was_sliding ? t.dynamic_friction : t.static_friction; }
+double friction_bound(const PatchRow& t) {
+    return t.was_sliding ? t.dynamic_friction : t.static_friction;
+}
 
 // stick force that the spring would give, and the mode that follows from it
 FrictionMode next_mode(const PatchRow& t, double trial, double normal) {
@@ -74,10 +85,13 @@ FrictionMode next_mode(const PatchRow& t, double trial, double normal) {
     return trial > 0.0 ? FrictionMode::slip_forward : FrictionMode::slip_backward;
 }
 
-double slip_sign(FrictionMode mode) { return mode == FrictionMode::slip_forward ? 1.0 : -1.0; }
+double slip_sign(FrictionMode mode) {
+    return mode == FrictionMode::slip_forward ? 1.0 : -1.0;
+}
 
 // adds the coupling to matrix and right side, and the state's momentum and external force
-LinearSystem base_system(const Model& model, const Data& data, const HandInput& hand, double dt, double left) {
+LinearSystem base_system(const Model& model, const Data& data, const HandInput& hand, double dt,
+                         double left) {
     const ContactSystem& s = data.system;
     LinearSystem l;
     l.matrix = s.mass;
@@ -102,7 +116,8 @@ Wrench coupling_force(const Model& model, const Data& data, const HandInput& han
     const Pose target = hand.target - left * hand.target_velocity;
     const Vec3 velocity = j * data.system.velocity.head<3>();
     const Vec3 distance = target - grip_pose(model.tool.grip, data.pose) - dt * velocity;
-    Wrench force = hand.stiffness.cwiseProduct(distance) + hand.damping.cwiseProduct(hand.target_velocity - velocity);
+    Wrench force =
+        hand.stiffness.cwiseProduct(distance) + hand.damping.cwiseProduct(hand.target_velocity - velocity);
     if (!model.tool.grip.pose)
         force.z() = 0.0;
     return force;
@@ -177,7 +192,8 @@ LinearSystem with_contacts(const ContactSystem& s, const LinearSystem& base, dou
     return l;
 }
 
-// takes over the pressing set and the friction modes that follow from the last solve; true when nothing changed
+// takes over the pressing set and the friction modes that follow from the last solve; true when nothing
+// changed
 bool update_sets(ContactSystem& s, double dt) {
     bool same = true;
     implicit_forces(s, dt);
@@ -210,7 +226,8 @@ void gauss_seidel(ContactSystem& s, const LinearSystem& base, double dt) {
         s.point[static_cast<std::size_t>(i)].force = 0.0;
     for (int i = 0; i < s.patches; ++i)
         s.row[static_cast<std::size_t>(i)].force = 0.0;
-    const auto relax = [&](const auto& row, double k, double wanted_free, double force, double low, double high) {
+    const auto relax = [&](const auto& row, double k, double wanted_free, double force, double low,
+                           double high) {
         response.noalias() = inverse * row.transpose();
         const double compliance = 1.0 / std::max(k, 1e-300) + dt * row.dot(response);
         const double residual = wanted_free / std::max(k, 1e-300) - force / std::max(k, 1e-300);
@@ -222,7 +239,8 @@ void gauss_seidel(ContactSystem& s, const LinearSystem& base, double dt) {
         for (int i = 0; i < s.points; ++i) {
             PointRow& p = s.point[static_cast<std::size_t>(i)];
             const double k = dt * p.stiffness + damping_of(p);
-            p.force = relax(s.normal_rows.row(i), k, -p.stiffness * p.gap - k * row_rate(s, i), p.force, 0.0, 1e300);
+            p.force = relax(s.normal_rows.row(i), k, -p.stiffness * p.gap - k * row_rate(s, i), p.force, 0.0,
+                            1e300);
         }
         for (int i = 0; i < s.patches; ++i) {
             PatchRow& t = s.row[static_cast<std::size_t>(i)];
@@ -283,7 +301,8 @@ void move_anchors(ContactSystem& s, double dt) {
 }
 
 // what the sub-step did to the tool and to the movables beside it
-void book(const Model& model, Data& data, const Wrench& hand_force, double share, double dt, StepOutput& output) {
+void book(const Model& model, Data& data, const Wrench& hand_force, double share, double dt,
+          StepOutput& output) {
     ContactSystem& s = data.system;
     const Vec3 velocity = s.velocity.head<3>();
     Wrench contact = Wrench::Zero();
@@ -292,7 +311,8 @@ void book(const Model& model, Data& data, const Wrench& hand_force, double share
         Vec3 on_tool = t.force * s.tangent_rows.row(i).head<3>().transpose();
         for (int k = 0; k < t.point_count; ++k) {
             const int point = t.first_point + k;
-            on_tool += s.point[static_cast<std::size_t>(point)].force * s.normal_rows.row(point).head<3>().transpose();
+            on_tool += s.point[static_cast<std::size_t>(point)].force *
+                       s.normal_rows.row(point).head<3>().transpose();
         }
         contact += on_tool;
         if (on_tool.isZero(0.0) && t.force == 0.0)
@@ -300,7 +320,8 @@ void book(const Model& model, Data& data, const Wrench& hand_force, double share
         // what the other side does: force times its velocity, v_other = v_tool - gap rate
         output.source_work += dt * (on_tool.dot(velocity) - t.force * tangent_rate(s, i));
         for (int k = 0; k < t.point_count; ++k)
-            output.source_work -= dt * s.point[static_cast<std::size_t>(t.first_point + k)].force * row_rate(s, t.first_point + k);
+            output.source_work -= dt * s.point[static_cast<std::size_t>(t.first_point + k)].force *
+                                  row_rate(s, t.first_point + k);
         if (t.movable < 0)
             continue;
         MovableState& m = data.movable[static_cast<std::size_t>(t.movable)];
@@ -311,7 +332,7 @@ void book(const Model& model, Data& data, const Wrench& hand_force, double share
         for (int k = 0; k < t.point_count; ++k) {
             const int point = t.first_point + k;
             m.belief.given += dt * s.point[static_cast<std::size_t>(point)].force *
-                       s.normal_rows.row(point).segment<3>(m.row).transpose();
+                              s.normal_rows.row(point).segment<3>(m.row).transpose();
         }
     }
     const Wrench environment = contact + Wrench(s.external.head<3>());
@@ -328,15 +349,16 @@ double effective_share(const HandInput& hand, const Wrench& full) {
                      hand.max_torque / std::max(std::abs(full.z()), 1e-300)});
 }
 
-void add_coupling(const Model& model, const Data& data, const HandInput& hand, const HandInput& used, double dt, double left,
-                  double share, StepOutput& output) {
+void add_coupling(const Model& model, const Data& data, const HandInput& hand, const HandInput& used,
+                  double dt, double left, double share, StepOutput& output) {
     const Wrench full = coupling_force(model, data, hand, dt, left);
     output.full_coupling += share * full;
     output.coupling += share * (used.stiffness.isZero(0.0) ? Wrench(used.force - hand.force)
                                                            : coupling_force(model, data, used, dt, left));
 }
 
-void solve_step(const Model& model, Data& data, const HandInput& hand, double dt, double left, StepOutput& output) {
+void solve_step(const Model& model, Data& data, const HandInput& hand, double dt, double left,
+                StepOutput& output) {
     LinearSystem base = base_system(model, data, hand, dt, left);
     if (model.settings.integrator == Integrator::semi_implicit)
         semi_implicit(data, base, dt);

@@ -1,18 +1,22 @@
-// Late geometry. Snapshots come at 20-120 Hz, late and unevenly; the haptic step needs poses every millisecond.
+// Late geometry. Snapshots come at 20-120 Hz, late and unevenly; the haptic step needs poses every
+// millisecond.
 //
-// Kinematic bodies are extrapolated from the snapshot with its velocity for at most two ticks, then brought to rest in k_rest seconds with
-// a velocity that falls linearly: for u = age - 2 ticks in [0, k_rest], distance = u - u^2 / (2 k_rest), velocity factor = 1 - u / k_rest.
-// When a new snapshot disagrees with the extrapolation, the difference becomes an offset that falls linearly to zero within
-// one tick, so that no surface jumps under the hand.
+// Kinematic bodies are extrapolated from the snapshot with its velocity for at most two ticks, then brought
+// to rest in k_rest seconds with a velocity that falls linearly: for u = age - 2 ticks in [0, k_rest],
+// distance = u - u^2 / (2 k_rest), velocity factor = 1 - u / k_rest. When a new snapshot disagrees with the
+// extrapolation, the difference becomes an offset that falls linearly to zero within one tick, so that no
+// surface jumps under the hand.
 //
-// Movable bodies belong to the local model between ticks. A snapshot says where the environment has them after it was told what the model
-// believed at the step `echo`. With B(t) the belief, C(t) the sum of corrections taken so far and X the environment's state at snapshot time s,
+// Movable bodies belong to the local model between ticks. A snapshot says where the environment has them
+// after it was told what the model believed at the step `echo`. With B(t) the belief, C(t) the sum of
+// corrections taken so far and X the environment's state at snapshot time s,
 //     innovation = X - (B(echo) moved on to s with B's velocity) - (C(now) + pending - C(echo)),
-// the last bracket being what has been corrected since and must not be corrected twice. It is blended in within one tick.
-
-#include "internal.hpp"
+// the last bracket being what has been corrected since and must not be corrected twice. It is blended in
+// within one tick.
 
 #include <algorithm>
+
+#include "internal.hpp"
 
 namespace haptics {
 namespace {
@@ -61,14 +65,16 @@ std::int32_t find_body(const BodySet& set, std::uint64_t id, std::int32_t hint) 
     return -1;
 }
 
-// patches name bodies by index: let them name the same bodies in the new list, and drop those whose body is gone
+// patches name bodies by index: let them name the same bodies in the new list, and drop those whose body is
+// gone
 void rename_patches(Data& data, const BodySet& next) {
     const std::int32_t links = data.tool.body_count;
     const auto renamed = [&](std::int32_t body) {
         if (body < links)
             return body;
         const std::int32_t old = body - links;
-        const std::int32_t found = find_body(next, data.neighbors.body[static_cast<std::size_t>(old)].id, old);
+        const std::int32_t found =
+            find_body(next, data.neighbors.body[static_cast<std::size_t>(old)].id, old);
         return found < 0 ? -1 : found + links;
     };
     std::int32_t kept = 0;
@@ -168,7 +174,9 @@ void take_neighborhood(const Neighborhood& n, Data& data) {
         if (old >= 0 && b.kind == BodyKind::kinematic) {
             const double age = std::max(data.time - n.time, 0.0);
             const double blend = std::max(1.0 - age / n.tick, 1e-3);
-            t.offset = (data.neighbors.body[static_cast<std::size_t>(old)].pose - (t.pose + reach.time * t.velocity)) / blend;
+            t.offset = (data.neighbors.body[static_cast<std::size_t>(old)].pose -
+                        (t.pose + reach.time * t.velocity)) /
+                       blend;
         }
     }
     copy_bodies(n.bodies, data.neighbors);

@@ -1,15 +1,17 @@
-// One haptic step: find contacts, resolve collisions at their own time, integrate continuous contact, take stock.
+// One haptic step: find contacts, resolve collisions at their own time, integrate continuous contact, take
+// stock.
 //
-// Sampled collision detection leaves up to h |v| of overlap, whose spring energy K (h v)^2 / 2 can be most of the impact energy at stiff
-// walls. So the step is cut at the time of impact: points that are apart close at t = gap / |gap rate|; the model is integrated up to
-// t, the impulses are applied with the gap at zero, and the rest of the step follows. At most `max_events` cuts are made; what would close later is
-// met by the contact spring and, if it is still closing then, resolved at the start of the next step.
-
-#include "internal.hpp"
+// Sampled collision detection leaves up to h |v| of overlap, whose spring energy K (h v)^2 / 2 can be most of
+// the impact energy at stiff walls. So the step is cut at the time of impact: points that are apart close at
+// t = gap / |gap rate|; the model is integrated up to t, the impulses are applied with the gap at zero, and
+// the rest of the step follows. At most `max_events` cuts are made; what would close later is met by the
+// contact spring and, if it is still closing then, resolved at the start of the next step.
 
 #include <haptics/core/contact/detection.hpp>
 
 #include <algorithm>
+
+#include "internal.hpp"
 
 namespace haptics {
 
@@ -31,7 +33,8 @@ Mat3 grip_mobility(const Model& model, const Data& data) {
     return j * inverse.asDiagonal() * j.transpose();
 }
 
-void step_direct(const Model& model, Data& data, const Pose& pose, const Twist& velocity, double dt, StepOutput& output) {
+void step_direct(const Model& model, Data& data, const Pose& pose, const Twist& velocity, double dt,
+                 StepOutput& output) {
     output = StepOutput{};
     data.pose = pose;
     data.velocity = velocity;

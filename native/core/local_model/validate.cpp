@@ -6,13 +6,15 @@ std::vector<FigureError> validate(const Surface& s) {
     FigureCheck check("surface.");
     constexpr double k_most = 1e12;
     // infinity leaves the figure to the partner
-    const auto range = [&check](const char* name, double value, double most, const char* unit, const char* remedy) {
+    const auto range = [&check](const char* name, double value, double most, const char* unit,
+                                const char* remedy) {
         return (std::isinf(value) && value > 0.0) || check.range(name, value, 0.0, most, unit, remedy);
     };
     range("stiffness", s.stiffness, k_most, "N/m", "The paper's wall has 15000 N/m.");
     range("damping", s.damping, k_most, "N s/m", "The paper's wall has 20 N s/m.");
     range("static_friction", s.static_friction, 100.0, "(no unit)", "Most materials lie between 0.1 and 1.");
-    if (range("dynamic_friction", s.dynamic_friction, 100.0, "(no unit)", "Most materials lie between 0.1 and 1.") &&
+    if (range("dynamic_friction", s.dynamic_friction, 100.0, "(no unit)",
+              "Most materials lie between 0.1 and 1.") &&
         s.dynamic_friction > s.static_friction)
         check.inconsistent("dynamic_friction", s.dynamic_friction, 0.0, s.static_friction, "(no unit)",
                            "Make it at most static_friction: sliding never holds better than sticking.");
@@ -22,16 +24,19 @@ std::vector<FigureError> validate(const Surface& s) {
 
 std::vector<FigureError> validate(const Model& model) {
     FigureCheck check;
-    check.range("mass", model.tool.mass, 1e-6, 1e4, "kg", "Give the tool a mass; 0.1 kg suits a desktop device.");
-    check.range("inertia", model.tool.inertia, 1e-12, 1e4, "kg m^2", "Leave it at 0 in the scene to have it computed from the shapes.");
+    check.range("mass", model.tool.mass, 1e-6, 1e4, "kg",
+                "Give the tool a mass; 0.1 kg suits a desktop device.");
+    check.range("inertia", model.tool.inertia, 1e-12, 1e4, "kg m^2",
+                "Leave it at 0 in the scene to have it computed from the shapes.");
     check.range("grip.x", model.tool.grip.point.x(), -10.0, 10.0, "m", "Put the grip on the tool.");
     check.range("grip.y", model.tool.grip.point.y(), -10.0, 10.0, "m", "Put the grip on the tool.");
-    check.range("pieces", static_cast<double>(model.tool.shape.piece_count), 1.0, static_cast<double>(k_max_pieces), "shapes",
-                "Give the tool at least one collision shape.");
+    check.range("pieces", static_cast<double>(model.tool.shape.piece_count), 1.0,
+                static_cast<double>(k_max_pieces), "shapes", "Give the tool at least one collision shape.");
     check.range("collision_speed", model.settings.collision_speed, 1e-6, 10.0, "m/s",
                 "Slower approaches than this give no collision impulse; 0.005 m/s is the default.");
     check.range("margin", model.settings.margin, 1e-6, 0.1, "m", "0.0005 m is the default.");
-    check.range("max_events", static_cast<double>(model.settings.max_events), 0.0, 64.0, "events", "4 is the default.");
+    check.range("max_events", static_cast<double>(model.settings.max_events), 0.0, 64.0, "events",
+                "4 is the default.");
     for (int i = 0; i < model.tool.shape.body_count; ++i)
         check.append(validate(model.tool.shape.body[static_cast<std::size_t>(i)].surface));
     return check.take();

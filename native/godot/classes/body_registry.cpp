@@ -1,5 +1,4 @@
 #include <haptics/classes/body_registry.hpp>
-
 #include <haptics/core/geometry/seams.hpp>
 
 #include <algorithm>
@@ -32,8 +31,8 @@ const BodySpec* BodyRegistry::find(std::int64_t id) const {
     return found == bodies_.end() ? nullptr : &found->second;
 }
 
-std::vector<std::int64_t> BodyRegistry::build(std::span<const std::int64_t> ids, std::span<const double> states,
-                                              Neighborhood& out) {
+std::vector<std::int64_t> BodyRegistry::build(std::span<const std::int64_t> ids,
+                                              std::span<const double> states, Neighborhood& out) {
     std::vector<std::int64_t> unknown;
     BodySet& set = out.bodies;
     set.body_count = 0;
@@ -80,7 +79,8 @@ void BodyRegistry::join_fixed(BodySet& set) {
         now.push_back({b.id, b.pose});
         const auto same = [&b](const Surface* s) {
             return s->stiffness == b.surface.stiffness && s->damping == b.surface.damping &&
-                   s->static_friction == b.surface.static_friction && s->dynamic_friction == b.surface.dynamic_friction &&
+                   s->static_friction == b.surface.static_friction &&
+                   s->dynamic_friction == b.surface.dynamic_friction &&
                    s->restitution == b.surface.restitution;
         };
         auto group = std::find_if(surfaces.begin(), surfaces.end(), same);

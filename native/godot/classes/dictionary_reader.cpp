@@ -18,7 +18,8 @@ Variant DictionaryReader::take(const char* key, const std::vector<Variant::Type>
     const Variant value = from_[key];
     if (std::find(types.begin(), types.end(), value.get_type()) != types.end())
         return value;
-    problems_.add(place_ + key + " is " + Variant::get_type_name(value.get_type()).utf8() + ", must be " + wanted + ".");
+    problems_.add(place_ + key + " is " + Variant::get_type_name(value.get_type()).utf8() + ", must be " +
+                  wanted + ".");
     return {};
 }
 
@@ -48,7 +49,8 @@ std::vector<double> DictionaryReader::numbers(const char* key) {
         for (int64_t i = 0; i < list.size(); ++i) {
             const Variant& entry = list[i];
             if (entry.get_type() != Variant::FLOAT && entry.get_type() != Variant::INT) {
-                problems_.add(place_ + key + " holds something that is not a number at place " + std::to_string(i) + ".");
+                problems_.add(place_ + key + " holds something that is not a number at place " +
+                              std::to_string(i) + ".");
                 return {};
             }
             out.push_back(entry.to<double>());
@@ -60,7 +62,8 @@ std::vector<double> DictionaryReader::numbers(const char* key) {
 std::vector<double> DictionaryReader::numbers(const char* key, std::size_t count) {
     std::vector<double> out = numbers(key);
     if (from_.has(key) && out.size() != count) {
-        problems_.add(place_ + key + " has " + std::to_string(out.size()) + " numbers, must have " + std::to_string(count) + ".");
+        problems_.add(place_ + key + " has " + std::to_string(out.size()) + " numbers, must have " +
+                      std::to_string(count) + ".");
         return {};
     }
     return out;

@@ -45,7 +45,8 @@ HapticWorld* HapticServer::find(int64_t world) const {
     const auto found = worlds_.find(world);
     if (found != worlds_.end())
         return found->second.get();
-    print_error("HapticServer: there is no world " + std::to_string(world) + ". Use an id from world_create().");
+    print_error("HapticServer: there is no world " + std::to_string(world) +
+                ". Use an id from world_create().");
     return nullptr;
 }
 
@@ -128,8 +129,9 @@ bool HapticServer::world_is_running(int64_t world) const {
     return w != nullptr && w->running();
 }
 
-PackedStringArray HapticServer::world_submit(int64_t world, const PackedInt64Array& bodies, const PackedFloat64Array& states,
-                                             double tick, const PackedFloat64Array& gravity) {
+PackedStringArray HapticServer::world_submit(int64_t world, const PackedInt64Array& bodies,
+                                             const PackedFloat64Array& states, double tick,
+                                             const PackedFloat64Array& gravity) {
     Problems problems;
     HapticWorld* w = find(world);
     if (w == nullptr)
@@ -137,7 +139,8 @@ PackedStringArray HapticServer::world_submit(int64_t world, const PackedInt64Arr
     const auto wanted = static_cast<std::size_t>(bodies.size()) * BodyRegistry::k_state;
     if (static_cast<std::size_t>(states.size()) != wanted || gravity.size() != 2) {
         problems.add("world_submit() got " + std::to_string(states.size()) + " state numbers for " +
-                     std::to_string(bodies.size()) + " bodies (6 each: x, y, angle, vx, vy, angular velocity) and " +
+                     std::to_string(bodies.size()) +
+                     " bodies (6 each: x, y, angle, vx, vy, angular velocity) and " +
                      std::to_string(gravity.size()) + " for gravity (2).");
         return problems.to_godot();
     }
@@ -288,10 +291,11 @@ void HapticServer::_bind_methods() {
     ClassDB::bind_method(D_METHOD("world_configure", "world", "settings"), &HapticServer::world_configure);
     ClassDB::bind_method(D_METHOD("world_set_tool", "world", "tool"), &HapticServer::world_set_tool);
     ClassDB::bind_method(D_METHOD("world_set_device", "world", "device"), &HapticServer::world_set_device);
-    ClassDB::bind_method(D_METHOD("world_set_body", "world", "body", "description"), &HapticServer::world_set_body);
+    ClassDB::bind_method(D_METHOD("world_set_body", "world", "body", "description"),
+                         &HapticServer::world_set_body);
     ClassDB::bind_method(D_METHOD("world_remove_body", "world", "body"), &HapticServer::world_remove_body);
-    ClassDB::bind_method(D_METHOD("world_start", "world", "realtime", "record_seconds"), &HapticServer::world_start,
-                         DEFVAL(0.0));
+    ClassDB::bind_method(D_METHOD("world_start", "world", "realtime", "record_seconds"),
+                         &HapticServer::world_start, DEFVAL(0.0));
     ClassDB::bind_method(D_METHOD("world_stop", "world"), &HapticServer::world_stop);
     ClassDB::bind_method(D_METHOD("world_is_running", "world"), &HapticServer::world_is_running);
     ClassDB::bind_method(D_METHOD("world_submit", "world", "bodies", "states", "tick", "gravity"),
@@ -309,7 +313,8 @@ void HapticServer::_bind_methods() {
     ClassDB::bind_method(D_METHOD("world_arm", "world", "armed"), &HapticServer::world_arm);
     ClassDB::bind_method(D_METHOD("world_set_paused", "world", "paused"), &HapticServer::world_set_paused);
     ClassDB::bind_method(D_METHOD("world_press_stop", "world"), &HapticServer::world_press_stop);
-    ClassDB::bind_method(D_METHOD("world_save_recording", "world", "path"), &HapticServer::world_save_recording);
+    ClassDB::bind_method(D_METHOD("world_save_recording", "world", "path"),
+                         &HapticServer::world_save_recording);
 
     BIND_ENUM_CONSTANT(STATE_STEP);
     BIND_ENUM_CONSTANT(STATE_TIME);

@@ -1,5 +1,4 @@
 #include <haptics/classes/world_settings.hpp>
-
 #include <haptics/core/local_model/validate.hpp>
 
 namespace haptics {
@@ -97,11 +96,12 @@ WorldSettings read_world_settings(const Dictionary& from, Problems& problems) {
     w.session.velocity_window = static_cast<int>(r.number("velocity_window", w.session.velocity_window));
     w.session.arm_at_start = r.flag("arm_at_start", w.session.arm_at_start);
     w.session.hold_at_start = r.flag("hold_at_start", w.session.hold_at_start);
-    w.model.contact_mode = r.choice("contact", w.model.contact_mode,
-                                    {{"penalty_impulse", ContactMode::penalty_impulse}, {"penalty", ContactMode::penalty}});
-    w.model.integrator =
-        r.choice("integrator", w.model.integrator,
-                 {{"semi_implicit", Integrator::semi_implicit}, {"linearly_implicit", Integrator::linearly_implicit}});
+    w.model.contact_mode =
+        r.choice("contact", w.model.contact_mode,
+                 {{"penalty_impulse", ContactMode::penalty_impulse}, {"penalty", ContactMode::penalty}});
+    w.model.integrator = r.choice(
+        "integrator", w.model.integrator,
+        {{"semi_implicit", Integrator::semi_implicit}, {"linearly_implicit", Integrator::linearly_implicit}});
     w.model.collision_method = r.choice("collision_method", w.model.collision_method,
                                         {{"poisson", CollisionMethod::poisson},
                                          {"mass_weighted", CollisionMethod::mass_weighted},
@@ -113,7 +113,8 @@ WorldSettings read_world_settings(const Dictionary& from, Problems& problems) {
     return w;
 }
 
-Surface read_surface(const Dictionary& from, const std::string& place, const Surface& fallback, Problems& problems) {
+Surface read_surface(const Dictionary& from, const std::string& place, const Surface& fallback,
+                     Problems& problems) {
     Surface s;
     DictionaryReader r(from, place, problems);
     s.stiffness = r.number("stiffness", fallback.stiffness);

@@ -1,6 +1,5 @@
 #include <haptics/realtime/haptic_runner.hpp>
 #include <haptics/shared/experiment1.hpp>
-#include <support/realtime_guard.hpp>
 
 #include <doctest/doctest.h>
 
@@ -9,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <support/realtime_guard.hpp>
 #include <thread>
 
 using namespace haptics;

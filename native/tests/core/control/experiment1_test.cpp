@@ -1,5 +1,5 @@
-// Where experiment 1 tells the two contact models apart, and where it does not. HAPTICS_EXPERIMENT1_TABLE=<file> writes the whole table as
-// Markdown; the test alone looks at its corners.
+// Where experiment 1 tells the two contact models apart, and where it does not.
+// HAPTICS_EXPERIMENT1_TABLE=<file> writes the whole table as Markdown; the test alone looks at its corners.
 
 #include <haptics/shared/experiment1.hpp>
 
@@ -17,7 +17,8 @@ using shared::Experiment1Options;
 namespace {
 
 struct Outcome {
-    /// From the first touch until the contact force stays within 0.2 N of the push, s; negative when it never does.
+    /// From the first touch until the contact force stays within 0.2 N of the push, s; negative when it never
+    /// does.
     double settling{-1.0};
     /// Peak to peak in the last second: contact force (N) and handle (m).
     double force_swing{0.0};
@@ -67,15 +68,17 @@ Outcome run(ContactMode contact, double tool, double gain) {
 
 void write_table(const char* path) {
     std::ofstream out(path);
-    out << "| tool kg | coupling N/m | contact | settles s | swing N | swing of the handle µm | energy created mJ |\n"
+    out << "| tool kg | coupling N/m | contact | settles s | swing N | swing of the handle µm | energy "
+           "created mJ |\n"
            "|---|---|---|---|---|---|---|\n"
         << std::fixed;
     for (const double tool : {0.1, 0.3, 1.0})
         for (const double gain : {1.0 / 3.0, 2.0 / 3.0, 1.0, 1.5})
             for (const ContactMode contact : {ContactMode::penalty, ContactMode::penalty_impulse}) {
                 const Outcome o = run(contact, tool, gain);
-                out << "| " << std::setprecision(1) << tool << " | " << std::setprecision(0) << o.stiffness << " | "
-                    << (contact == ContactMode::penalty ? "penalty" : "penalty and impulse") << " | ";
+                out << "| " << std::setprecision(1) << tool << " | " << std::setprecision(0) << o.stiffness
+                    << " | " << (contact == ContactMode::penalty ? "penalty" : "penalty and impulse")
+                    << " | ";
                 if (o.settling < 0.0)
                     out << "never";
                 else

@@ -1,10 +1,10 @@
 #include <haptics/core/control/session.hpp>
 #include <haptics/shared/experiment1.hpp>
-#include <support/allocation_guard.hpp>
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <support/allocation_guard.hpp>
 
 using namespace haptics;
 using haptics::testing::AllocationGuard;

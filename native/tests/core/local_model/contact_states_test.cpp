@@ -48,7 +48,6 @@ Surface rough(double mu_static, double mu_dynamic) {
     return s;
 }
 
-
 } // namespace
 
 TEST_CASE("a slow approach goes from none to continuous contact without a collision") {
@@ -114,7 +113,7 @@ TEST_CASE("sticking turns into sliding above the static bound and back below the
 TEST_CASE("a sticking contact does not creep in 10 minutes at 99 % of the static bound") {
     for (const Integrator integrator : {Integrator::semi_implicit, Integrator::linearly_implicit}) {
         Scene s(rough(0.5, 0.4));
-            s.model.settings.integrator = integrator;
+        s.model.settings.integrator = integrator;
         s.h = 0.002;
         reset(s.model, *s.data, Pose(0.0, 0.0099, 0.0));
         s.push(0.0, -2.0);

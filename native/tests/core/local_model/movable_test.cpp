@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::uint64_t k_object = 7;
 
-std::unique_ptr<Neighborhood> with_object(double mass, double x, double restitution, bool wall_behind = false) {
+std::unique_ptr<Neighborhood> with_object(double mass, double x, double restitution,
+                                          bool wall_behind = false) {
     auto n = std::make_unique<Neighborhood>();
     n->sequence = 1;
     Surface s = shared::paper_surface();

@@ -1,5 +1,6 @@
 #pragma once
-/// Vectors, poses and the few planar operations that every room uses. SI units, y up, angles counter-clockwise.
+/// Vectors, poses and the few planar operations that every room uses. SI units, y up, angles
+/// counter-clockwise.
 
 #include <Eigen/Dense>
 #include <cmath>
@@ -19,9 +20,13 @@ using Twist = Vec3;
 using Wrench = Vec3;
 
 /// z component of a x b.
-inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+inline double cross(const Vec2& a, const Vec2& b) {
+    return a.x() * b.y() - a.y() * b.x();
+}
 /// v turned by +90 degrees.
-inline Vec2 perpendicular(const Vec2& v) { return {-v.y(), v.x()}; }
+inline Vec2 perpendicular(const Vec2& v) {
+    return {-v.y(), v.x()};
+}
 /// v turned by `angle` (rad).
 inline Vec2 rotate(double angle, const Vec2& v) {
     const double c = std::cos(angle);
@@ -41,7 +46,9 @@ struct Transform {
         , sine(std::sin(pose.z())) {}
 
     /// Direction from body to scene axes.
-    [[nodiscard]] Vec2 turn(const Vec2& v) const { return {cosine * v.x() - sine * v.y(), sine * v.x() + cosine * v.y()}; }
+    [[nodiscard]] Vec2 turn(const Vec2& v) const {
+        return {cosine * v.x() - sine * v.y(), sine * v.x() + cosine * v.y()};
+    }
     /// Direction from scene to body axes.
     [[nodiscard]] Vec2 turn_back(const Vec2& v) const {
         return {cosine * v.x() + sine * v.y(), -sine * v.x() + cosine * v.y()};

@@ -69,12 +69,16 @@ class HapticRunner final : public LoopStep {
     }
     [[nodiscard]] std::uint64_t events_dropped() const noexcept { return events_.dropped(); }
 
-    /// Owner, before start: sets a recorder aside (allocates); the first `seconds` of steps are kept, 0 records nothing.
+    /// Owner, before start: sets a recorder aside (allocates); the first `seconds` of steps are kept, 0
+    /// records nothing.
     void record(double seconds);
-    /// Owner: takes over what was recorded since the last call; at least every four seconds while a thread runs.
+    /// Owner: takes over what was recorded since the last call; at least every four seconds while a thread
+    /// runs.
     void collect();
     [[nodiscard]] bool recording() const { return recorder_ != nullptr; }
-    [[nodiscard]] std::uint64_t rows_dropped() const { return recorder_ == nullptr ? 0 : recorder_->dropped(); }
+    [[nodiscard]] std::uint64_t rows_dropped() const {
+        return recorder_ == nullptr ? 0 : recorder_->dropped();
+    }
     /// Owner: writes all rows as CSV. False with the reason in `error`.
     bool write_recording(const std::string& path, std::string& error);
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Experiment 1 of the paper: a constant hand force of 2 N drives a rectangular tool into a wall of 15000 N/m and 20 N s/m at 500 Hz,
-/// with and without collision impulses.
+/// Experiment 1 of the paper: a constant hand force of 2 N drives a rectangular tool into a wall of 15000 N/m
+/// and 20 N s/m at 500 Hz, with and without collision impulses.
 
 #include <haptics/core/control/session.hpp>
 #include <haptics/devices/simulated/simulated_pantograph.hpp>

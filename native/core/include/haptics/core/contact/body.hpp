@@ -1,5 +1,6 @@
 #pragma once
-/// The bodies of one haptic step: the links of the tool and the neighbors of the snapshot, with their convex pieces.
+/// The bodies of one haptic step: the links of the tool and the neighbors of the snapshot, with their convex
+/// pieces.
 
 #include <haptics/core/contact/surface.hpp>
 #include <haptics/core/geometry/convex.hpp>
@@ -20,7 +21,8 @@ enum class BodyKind : std::uint8_t {
 
 /// One body. Poses and velocities refer to the body's center of mass.
 struct Body {
-    /// Persistent id, unique in a snapshot; the scene's instance id for neighbors, the link number for the tool.
+    /// Persistent id, unique in a snapshot; the scene's instance id for neighbors, the link number for the
+    /// tool.
     std::uint64_t id{0};
     BodyKind kind{BodyKind::fixed};
     Pose pose{0.0, 0.0, 0.0};

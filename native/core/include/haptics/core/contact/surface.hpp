@@ -30,8 +30,9 @@ inline Surface neutral_surface() {
     return {k_infinite, k_infinite, k_infinite, k_infinite, 0.0};
 }
 
-/// Two springs that press on each other act in series, so their compliances add; dampers likewise. The smoother side decides the friction, the
-/// livelier one the restitution. So infinite stiffness, damping and friction with restitution 0 leave the partner's law as it is.
+/// Two springs that press on each other act in series, so their compliances add; dampers likewise. The
+/// smoother side decides the friction, the livelier one the restitution. So infinite stiffness, damping and
+/// friction with restitution 0 leave the partner's law as it is.
 inline Surface combine(const Surface& a, const Surface& b) {
     const auto series = [](double p, double q) {
         if (std::isinf(p))

@@ -9,7 +9,8 @@ namespace haptics {
 
 /// What is exchanged between device and proxy.
 enum class Coupling : std::uint8_t {
-    four_channel,     ///< positions and forces, both ways (the paper's controller); positions alone while the device measures no force
+    four_channel,     ///< positions and forces, both ways (the paper's controller); positions alone while the
+                      ///< device measures no force
     virtual_coupling, ///< positions only: a spring-damper between device and proxy
     direct,           ///< no proxy: contact forces at the device's own pose (baseline)
 };
@@ -21,11 +22,14 @@ struct CouplingGains {
 };
 
 /// Largest coupling that the sampled loop holds with a comfortable margin (derivation in coupling.cpp).
-/// `device_mass` is the handle's mass matrix in scene axes; `mobility` the proxy's J_h D^-1 J_h^T when forces are fed forward (four channels),
-/// zero otherwise; `step` the loop's period in s; `delay` what the device adds, in s; `velocity_window` that of the velocity estimate, samples.
-CouplingGains default_gains(const Mat3& device_mass, const Mat3& mobility, double step, double delay, int velocity_window);
+/// `device_mass` is the handle's mass matrix in scene axes; `mobility` the proxy's J_h D^-1 J_h^T when forces
+/// are fed forward (four channels), zero otherwise; `step` the loop's period in s; `delay` what the device
+/// adds, in s; `velocity_window` that of the velocity estimate, samples.
+CouplingGains default_gains(const Mat3& device_mass, const Mat3& mobility, double step, double delay,
+                            int velocity_window);
 
-/// S = (J_h D^-1 J_h^T + M_d^-1)^-1: what device and proxy weigh together, seen at the grip. Finite where J_h D^-1 J_h^T is singular.
+/// S = (J_h D^-1 J_h^T + M_d^-1)^-1: what device and proxy weigh together, seen at the grip. Finite where J_h
+/// D^-1 J_h^T is singular.
 Mat3 combined_mass(const Mat3& grip_mobility, const Mat3& device_mass);
 
 } // namespace haptics

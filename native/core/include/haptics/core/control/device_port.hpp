@@ -23,7 +23,8 @@ struct DeviceReading {
     std::uint64_t sequence{0};
 };
 
-/// A device seen from the haptic loop. Neither call allocates, locks, logs or throws; neither blocks longer than the device needs.
+/// A device seen from the haptic loop. Neither call allocates, locks, logs or throws; neither blocks longer
+/// than the device needs.
 class DevicePort {
   public:
     virtual ~DevicePort() = default;

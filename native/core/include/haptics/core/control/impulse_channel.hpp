@@ -1,8 +1,9 @@
 #pragma once
 /// Collision impulses on their way to the hand (eq. 7 of the paper, with actuators that have limits).
 ///
-/// Eq. (7) turns an impulse into a force over one step. Real actuators saturate, so what does not fit is spread over at most `k_spread`
-/// and dropped when the contact opens: felt later it would be a push out of nothing. Invariant: delivered + pending + dropped = demanded.
+/// Eq. (7) turns an impulse into a force over one step. Real actuators saturate, so what does not fit is
+/// spread over at most `k_spread` and dropped when the contact opens: felt later it would be a push out of
+/// nothing. Invariant: delivered + pending + dropped = demanded.
 
 #include <haptics/core/types.hpp>
 

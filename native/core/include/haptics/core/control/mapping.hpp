@@ -1,6 +1,7 @@
 #pragma once
-/// From the device's workspace to the scene and back: x_scene = s R x_device + o. Power-conjugate: F_device = s R^T F_scene, so that
-/// a wall of stiffness K feels like s^2 K at the handle. Angles and torques are not scaled.
+/// From the device's workspace to the scene and back: x_scene = s R x_device + o. Power-conjugate: F_device =
+/// s R^T F_scene, so that a wall of stiffness K feels like s^2 K at the handle. Angles and torques are not
+/// scaled.
 
 #include <haptics/core/types.hpp>
 

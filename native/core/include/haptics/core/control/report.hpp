@@ -76,7 +76,8 @@ struct HapticReport {
     bool armed{false};
     GateFlag gate{GateFlag::none};
     Fault faults{Fault::none};
-    /// Steps in which a solver used its fallback, contact patches dropped, movables without a place: grow only.
+    /// Steps in which a solver used its fallback, contact patches dropped, movables without a place: grow
+    /// only.
     std::uint64_t fallbacks{0};
     std::uint64_t patch_overflow{0};
     std::int32_t movable_overflow{0};

@@ -38,11 +38,14 @@ struct SessionSettings {
 /// Every setting out of range, with its remedy. Allocates; not for the haptic loop.
 std::vector<FigureError> validate(const SessionSettings& settings);
 
-/// Owns the local model's data and the controller's state; uses a device and a gate. Loop thread only, but for the constructor.
+/// Owns the local model's data and the controller's state; uses a device and a gate. Loop thread only, but
+/// for the constructor.
 class Session {
   public:
-    /// Sets everything aside (allocates). `start` is the pose of the tool's center of mass. `device` outlives the session.
-    Session(const SessionSettings& settings, const Model& model, const OutputGate& gate, DevicePort& device, const Pose& start);
+    /// Sets everything aside (allocates). `start` is the pose of the tool's center of mass. `device` outlives
+    /// the session.
+    Session(const SessionSettings& settings, const Model& model, const OutputGate& gate, DevicePort& device,
+            const Pose& start);
 
     /// Takes a newer neighborhood.
     void take(const Neighborhood& neighborhood) { take_neighborhood(neighborhood, *data_); }
@@ -54,7 +57,8 @@ class Session {
     /// Taking hold and letting go take this long, s.
     static constexpr double k_grasp_time = 0.1;
 
-    /// The hand takes hold of the tool (the offset between handle and grip freezes, so the force starts at zero) or lets go.
+    /// The hand takes hold of the tool (the offset between handle and grip freezes, so the force starts at
+    /// zero) or lets go.
     void hold(bool held);
     /// Asks the gate to arm; the answer is in the next report's `armed` and in `arm_result()`.
     void arm();
@@ -74,7 +78,9 @@ class Session {
     [[nodiscard]] const Model& model() const { return *model_; }
     [[nodiscard]] const CouplingGains& gains() const { return gains_; }
     /// Handle pose at which the grip would be at `grip` (device frame): where a pointing hand has to go.
-    [[nodiscard]] Pose handle_for(const Pose& grip) const { return settings_.mapping.to_device(grip - grab_offset_); }
+    [[nodiscard]] Pose handle_for(const Pose& grip) const {
+        return settings_.mapping.to_device(grip - grab_offset_);
+    }
     [[nodiscard]] const Pose& grab_offset() const { return grab_offset_; }
 
   private:

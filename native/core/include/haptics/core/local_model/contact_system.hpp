@@ -16,8 +16,10 @@ inline constexpr int k_max_island_freedoms = 3 + 3 * k_max_movables;
 /// Contact points of one step.
 inline constexpr int k_max_points = 2 * k_max_patches;
 
-using PointRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, k_max_points, k_max_island_freedoms>;
-using PatchRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, k_max_patches, k_max_island_freedoms>;
+using PointRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, k_max_points,
+                                k_max_island_freedoms>;
+using PatchRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, k_max_patches,
+                                k_max_island_freedoms>;
 
 /// Friction of a patch during one solve.
 enum class FrictionMode : std::int8_t { off, stick, slip_forward, slip_backward };

@@ -15,7 +15,8 @@ namespace haptics {
 struct Track {
     Pose pose{0.0, 0.0, 0.0};
     Twist velocity{0.0, 0.0, 0.0};
-    /// Distance between where the body was drawn from the last snapshot and where the new one has it: taken away within one tick.
+    /// Distance between where the body was drawn from the last snapshot and where the new one has it: taken
+    /// away within one tick.
     Pose offset{0.0, 0.0, 0.0};
 };
 

@@ -22,8 +22,8 @@ struct HandInput {
     /// Most force and torque that the coupling may give (what the device can answer with), N and N m.
     double max_force{1e300};
     double max_torque{1e300};
-    /// Share of the coupling that takes effect, 0..1: below 1 while the output gate fades or clamps, so that the proxy receives the
-    /// force that was applied and not the one commanded.
+    /// Share of the coupling that takes effect, 0..1: below 1 while the output gate fades or clamps, so that
+    /// the proxy receives the force that was applied and not the one commanded.
     double share{1.0};
     /// Force of the hand fed forward to the grip (four channels), N, N, N m.
     Wrench force{0.0, 0.0, 0.0};
@@ -31,10 +31,10 @@ struct HandInput {
 
 /// What a game may want to hear of.
 enum class ContactEventKind : std::uint8_t {
-    began,   ///< the first touch between the tool and a body
-    ended,   ///< the last patch with a body opened, or the body left
-    impact,  ///< a collision was resolved (state colliding)
-    slip,    ///< a sticking patch began to slide
+    began,  ///< the first touch between the tool and a body
+    ended,  ///< the last patch with a body opened, or the body left
+    impact, ///< a collision was resolved (state colliding)
+    slip,   ///< a sticking patch began to slide
 };
 
 struct ContactEvent {
@@ -43,7 +43,8 @@ struct ContactEvent {
     std::uint64_t body{0};
     /// Loop-clock time, s.
     double time{0.0};
-    /// Where, and the normal out of the neighbor, scene axes (x, y); plain numbers, so that events cross threads by copying.
+    /// Where, and the normal out of the neighbor, scene axes (x, y); plain numbers, so that events cross
+    /// threads by copying.
     std::array<double, 2> position{0.0, 0.0};
     std::array<double, 2> normal{0.0, 1.0};
     /// Normal impulse of an impact, N s; 0 otherwise.
@@ -73,9 +74,11 @@ struct StepOutput {
     int sticking{0};
     int sliding{0};
     double max_penetration{0.0};
-    /// Energy at the end of the step in the tool's motion, in the contact springs on it and in the coupling, J.
+    /// Energy at the end of the step in the tool's motion, in the contact springs on it and in the coupling,
+    /// J.
     double stored_energy{0.0};
-    /// Work of the step on the tool by gravity, by what it touches (moving walls, movable neighbors) and by the hand's force channel, J.
+    /// Work of the step on the tool by gravity, by what it touches (moving walls, movable neighbors) and by
+    /// the hand's force channel, J.
     double source_work{0.0};
     /// Net normal impulse of collisions along all patches, N s (sizes added).
     double impulse_size{0.0};
@@ -91,7 +94,8 @@ struct StepOutput {
 /// Puts the proxy somewhere at rest and forgets all contacts.
 void reset(const Model& model, Data& data, const Pose& pose);
 
-/// Takes a newer snapshot: contact memory and movable bodies survive. Does nothing when the sequence is not newer.
+/// Takes a newer snapshot: contact memory and movable bodies survive. Does nothing when the sequence is not
+/// newer.
 void take_neighborhood(const Neighborhood& neighborhood, Data& data);
 
 /// Time passes without a step (the loop was late): kinematic neighbors go on, proxy and contacts wait.
@@ -103,8 +107,10 @@ void step(const Model& model, Data& data, const HandInput& hand, double dt, Step
 /// J_h D^-1 J_h^T at the grip for the present pose.
 Mat3 grip_mobility(const Model& model, const Data& data);
 
-/// Contact forces of a proxy that is put at `pose` with `velocity` and has no motion of its own: direct rendering, the baseline.
-void step_direct(const Model& model, Data& data, const Pose& pose, const Twist& velocity, double dt, StepOutput& output);
+/// Contact forces of a proxy that is put at `pose` with `velocity` and has no motion of its own: direct
+/// rendering, the baseline.
+void step_direct(const Model& model, Data& data, const Pose& pose, const Twist& velocity, double dt,
+                 StepOutput& output);
 
 /// Pose of the grip for a pose of the center of mass.
 Pose grip_pose(const Grip& grip, const Pose& pose);

@@ -1,5 +1,6 @@
 #pragma once
-/// Constants of the local model: the tool, the method, the limits. Built off the loop, never written while stepping.
+/// Constants of the local model: the tool, the method, the limits. Built off the loop, never written while
+/// stepping.
 
 #include <haptics/core/contact/body.hpp>
 #include <haptics/core/contact/collision.hpp>
@@ -10,9 +11,11 @@ namespace haptics {
 
 /// How stiff contacts are integrated in time.
 enum class Integrator : std::uint8_t {
-    /// Forces at the start of the step, positions with the new velocity: cheapest; needs m > (K h^2 + 2 B h) / 4 per contact.
+    /// Forces at the start of the step, positions with the new velocity: cheapest; needs m > (K h^2 + 2 B h)
+    /// / 4 per contact.
     semi_implicit,
-    /// Forces at the end of the step, linearized: stable for every stiffness and mass; damps fast contact modes.
+    /// Forces at the end of the step, linearized: stable for every stiffness and mass; damps fast contact
+    /// modes.
     linearly_implicit,
 };
 
@@ -26,7 +29,8 @@ enum class ContactMode : std::uint8_t {
 struct Grip {
     /// Held point in the axes of the tool's body (from its center of mass), m.
     Vec2 point{0.0, 0.0};
-    /// True: position and angle are held (3 rows). False: the point alone (2 rows), the tool turns freely about it.
+    /// True: position and angle are held (3 rows). False: the point alone (2 rows), the tool turns freely
+    /// about it.
     bool pose{true};
 };
 

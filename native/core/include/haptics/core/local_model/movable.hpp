@@ -10,8 +10,9 @@ namespace haptics {
 /// Movable neighbors that are integrated together with the tool; what exceeds it is treated as kinematic.
 inline constexpr int k_max_movables = 16;
 
-/// The part of a movable's state that travels to the environment in a report and comes back, unchanged, with the snapshot that reflects
-/// this report. The local model compares the two and takes over only the difference, so that its own, newer knowledge survives.
+/// The part of a movable's state that travels to the environment in a report and comes back, unchanged, with
+/// the snapshot that reflects this report. The local model compares the two and takes over only the
+/// difference, so that its own, newer knowledge survives.
 struct MovableBelief {
     std::uint64_t id{0};
     /// Step at which the model met the body: the counter `given` starts at zero there.
@@ -24,8 +25,8 @@ struct MovableBelief {
     /// Corrections taken over from the environment since `epoch` (sum).
     Pose corrected_pose{0.0, 0.0, 0.0};
     Twist corrected_velocity{0.0, 0.0, 0.0};
-    /// Impulse and angular impulse that the tool has given to the body since `epoch` (N s, N s, N m s): a cumulative counter, so that a
-    /// lost report loses no momentum.
+    /// Impulse and angular impulse that the tool has given to the body since `epoch` (N s, N s, N m s): a
+    /// cumulative counter, so that a lost report loses no momentum.
     Wrench given{0.0, 0.0, 0.0};
 };
 

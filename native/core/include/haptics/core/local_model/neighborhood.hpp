@@ -1,6 +1,6 @@
 #pragma once
-/// The geometry near the tool as the virtual environment last saw it: an immutable, pointer-free snapshot that the scene writes at
-/// its physics tick and the haptic loop reads.
+/// The geometry near the tool as the virtual environment last saw it: an immutable, pointer-free snapshot
+/// that the scene writes at its physics tick and the haptic loop reads.
 
 #include <haptics/core/contact/body.hpp>
 #include <haptics/core/local_model/movable.hpp>
@@ -17,8 +17,8 @@ struct Neighborhood {
     double time{0.0};
     /// Length of the environment's tick, s, > 0.
     double tick{1.0 / 60.0};
-    /// The haptic step whose report the movable bodies of this snapshot reflect: the impulses of that report were given to them before
-    /// the environment's last tick.
+    /// The haptic step whose report the movable bodies of this snapshot reflect: the impulses of that report
+    /// were given to them before the environment's last tick.
     std::uint64_t echo_step{0};
     /// Beliefs of that report, unchanged.
     std::int32_t echo_count{0};

@@ -19,8 +19,10 @@ struct BodySpec {
     Vec2 center{0.0, 0.0};
 };
 
-/// Reads one body: kind (fixed, kinematic, movable, tool), mass, inertia (0: from the shapes), center, surface, shapes, rounding.
-BodySpec read_body(const godot::Dictionary& from, const std::string& place, const Surface& fallback, Problems& problems);
+/// Reads one body: kind (fixed, kinematic, movable, tool), mass, inertia (0: from the shapes), center,
+/// surface, shapes, rounding.
+BodySpec read_body(const godot::Dictionary& from, const std::string& place, const Surface& fallback,
+                   Problems& problems);
 
 /// Pose of the center of mass for a pose of the node, and back.
 Pose node_to_center(const Pose& node, const Vec2& center);
@@ -36,11 +38,14 @@ class BodyRegistry {
     [[nodiscard]] std::size_t size() const { return bodies_.size(); }
     void clear() { bodies_.clear(); }
 
-    /// Numbers per body in `states` of build(): node pose (x, y, theta), then velocity of the center of mass (x, y) and angular velocity.
+    /// Numbers per body in `states` of build(): node pose (x, y, theta), then velocity of the center of mass
+    /// (x, y) and angular velocity.
     static constexpr std::size_t k_state = 6;
 
-    /// Fills the bodies of a snapshot from ids and states; what does not fit is counted in `overflow`, unknown ids are returned.
-    std::vector<std::int64_t> build(std::span<const std::int64_t> ids, std::span<const double> states, Neighborhood& out);
+    /// Fills the bodies of a snapshot from ids and states; what does not fit is counted in `overflow`,
+    /// unknown ids are returned.
+    std::vector<std::int64_t> build(std::span<const std::int64_t> ids, std::span<const double> states,
+                                    Neighborhood& out);
 
   private:
     void join_fixed(BodySet& set);

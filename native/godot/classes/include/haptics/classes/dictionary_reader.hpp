@@ -1,5 +1,6 @@
 #pragma once
-/// Reads settings out of a Dictionary and notes every key that is unknown, of the wrong type or without sense.
+/// Reads settings out of a Dictionary and notes every key that is unknown, of the wrong type or without
+/// sense.
 
 #include <haptics/binder/godot.hpp>
 #include <haptics/core/figure_error.hpp>

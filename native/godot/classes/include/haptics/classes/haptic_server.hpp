@@ -8,8 +8,9 @@
 
 namespace haptics {
 
-/// The singleton through which scripts reach everything native, as Godot's own servers are reached: a plain Object that hands out ids.
-/// Everything is SI, y up, relative to the world; main thread only. The class reference is native/godot/doc/HapticServer.xml.
+/// The singleton through which scripts reach everything native, as Godot's own servers are reached: a plain
+/// Object that hands out ids. Everything is SI, y up, relative to the world; main thread only. The class
+/// reference is native/godot/doc/HapticServer.xml.
 class HapticServer : public godot::Object {
     GDCLASS(HapticServer, godot::Object)
 
@@ -17,7 +18,8 @@ class HapticServer : public godot::Object {
     HapticServer();
     ~HapticServer() override;
 
-    /// Null before scene level and after it. After a hot reload it is null until the engine has made the new C++ side.
+    /// Null before scene level and after it. After a hot reload it is null until the engine has made the new
+    /// C++ side.
     static HapticServer* get_singleton();
     /// Stops every world and its thread: before the library goes.
     static void stop_all();
@@ -29,16 +31,36 @@ class HapticServer : public godot::Object {
 
     /// Indices into world_get_state().
     enum State {
-        STATE_STEP, STATE_TIME,
-        STATE_TOOL_X, STATE_TOOL_Y, STATE_TOOL_ANGLE,
-        STATE_GRIP_X, STATE_GRIP_Y, STATE_GRIP_ANGLE,
-        STATE_DEVICE_X, STATE_DEVICE_Y, STATE_DEVICE_ANGLE,
-        STATE_VELOCITY_X, STATE_VELOCITY_Y, STATE_VELOCITY_ANGLE,
-        STATE_FORCE_X, STATE_FORCE_Y, STATE_TORQUE,
-        STATE_CONTACT_FORCE_X, STATE_CONTACT_FORCE_Y, STATE_CONTACT_TORQUE,
-        STATE_CONTACTS, STATE_COLLIDING, STATE_STICKING, STATE_SLIDING,
-        STATE_PENETRATION, STATE_ENERGY_INJECTED,
-        STATE_ARMED, STATE_HELD, STATE_FAULTS, STATE_BUTTONS,
+        STATE_STEP,
+        STATE_TIME,
+        STATE_TOOL_X,
+        STATE_TOOL_Y,
+        STATE_TOOL_ANGLE,
+        STATE_GRIP_X,
+        STATE_GRIP_Y,
+        STATE_GRIP_ANGLE,
+        STATE_DEVICE_X,
+        STATE_DEVICE_Y,
+        STATE_DEVICE_ANGLE,
+        STATE_VELOCITY_X,
+        STATE_VELOCITY_Y,
+        STATE_VELOCITY_ANGLE,
+        STATE_FORCE_X,
+        STATE_FORCE_Y,
+        STATE_TORQUE,
+        STATE_CONTACT_FORCE_X,
+        STATE_CONTACT_FORCE_Y,
+        STATE_CONTACT_TORQUE,
+        STATE_CONTACTS,
+        STATE_COLLIDING,
+        STATE_STICKING,
+        STATE_SLIDING,
+        STATE_PENETRATION,
+        STATE_ENERGY_INJECTED,
+        STATE_ARMED,
+        STATE_HELD,
+        STATE_FAULTS,
+        STATE_BUTTONS,
         STATE_COUNT,
     };
 
@@ -47,7 +69,8 @@ class HapticServer : public godot::Object {
     godot::PackedStringArray world_configure(int64_t world, const godot::Dictionary& settings);
     godot::PackedStringArray world_set_tool(int64_t world, const godot::Dictionary& tool);
     godot::PackedStringArray world_set_device(int64_t world, const godot::Dictionary& device);
-    godot::PackedStringArray world_set_body(int64_t world, int64_t body, const godot::Dictionary& description);
+    godot::PackedStringArray world_set_body(int64_t world, int64_t body,
+                                            const godot::Dictionary& description);
     void world_remove_body(int64_t world, int64_t body);
     godot::PackedStringArray world_start(int64_t world, bool realtime, double record_seconds);
     void world_stop(int64_t world);

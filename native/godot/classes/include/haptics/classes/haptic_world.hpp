@@ -49,8 +49,8 @@ class HapticWorld {
     void remove_body(std::int64_t id);
 
     /// Publishes a snapshot; ids that could not be used are named in `problems` (once each).
-    void submit(std::span<const std::int64_t> ids, std::span<const double> states, double tick, const Vec2& gravity,
-                Problems& problems);
+    void submit(std::span<const std::int64_t> ids, std::span<const double> states, double tick,
+                const Vec2& gravity, Problems& problems);
     /// Builds session and runner; starts the thread when `realtime`.
     void start(bool realtime, double record_seconds, Problems& problems);
     void stop();

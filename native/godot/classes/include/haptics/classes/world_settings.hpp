@@ -27,7 +27,8 @@ struct WorldSettings {
 WorldSettings read_world_settings(const godot::Dictionary& from, Problems& problems);
 
 /// A surface; keys stiffness, damping, static_friction, dynamic_friction, restitution.
-Surface read_surface(const godot::Dictionary& from, const std::string& place, const Surface& fallback, Problems& problems);
+Surface read_surface(const godot::Dictionary& from, const std::string& place, const Surface& fallback,
+                     Problems& problems);
 
 /// A simulated pantograph and its hand.
 SimulatedPantographOptions read_simulated_pantograph(const godot::Dictionary& from, Problems& problems);
