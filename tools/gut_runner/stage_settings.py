@@ -21,10 +21,18 @@ def check_runner(text: str, kind: str) -> str:
     return text.replace("warnings/directory_rules={\n", "warnings/directory_rules={\n" + rules)
 
 
+def drop_missing_main_scene(text: str, folder: pathlib.Path) -> str:
+    """A staging project without our scenes (the self tests') would fail to load it."""
+    main_scene = re.compile(r'^run/main_scene="res://(.*)"\n', re.MULTILINE)
+    named = main_scene.search(text)
+    return main_scene.sub("", text) if named and not (folder / named[1]).exists() else text
+
+
 def main() -> None:
     kind, source, target = sys.argv[1:]
-    text = check_runner(enable_host(pathlib.Path(source).read_text(encoding="utf-8")), kind)
     path = pathlib.Path(target)
+    text = check_runner(enable_host(pathlib.Path(source).read_text(encoding="utf-8")), kind)
+    text = drop_missing_main_scene(text, path.parent)
     if not path.exists() or path.read_text(encoding="utf-8") != text:
         path.write_text(text, encoding="utf-8")
 

@@ -49,7 +49,7 @@ func reach(extent: float, speed: float, tick_seconds: float) -> float:
 ## Publishes the bodies within `radius` px of `center` (canvas) that `mask` selects. Returns what
 ## is wrong, each with the path of its node.
 func publish(
-	space: PhysicsDirectSpaceState2D,
+	world_2d: World2D,
 	center: Vector2,
 	radius: float,
 	mask: int,
@@ -64,7 +64,7 @@ func publish(
 	_circle.radius = radius
 	_query.transform = Transform2D(0.0, center)
 	_query.collision_mask = mask
-	for reader: BodyReader in _find(space):
+	for reader: BodyReader in _find(world_2d.direct_space_state):
 		if reader.is_dirty or (_tick + reader.id) % 60 == 0:
 			_describe(reader, problems)
 		if not reader.is_usable:

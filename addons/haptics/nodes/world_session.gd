@@ -86,7 +86,7 @@ func tick(seconds: float) -> PackedStringArray:
 	var speed := Vector2(state[Gateway.State.VELOCITY_X], state[Gateway.State.VELOCITY_Y]).length()
 	var place := units.point_to_canvas(state[Gateway.State.TOOL_X], state[Gateway.State.TOOL_Y])
 	var problems := neighborhood.publish(
-		_world.get_world_2d().direct_space_state,
+		_world.get_world_2d(),
 		place,
 		neighborhood.reach(ToolReader.extent(tool), speed, seconds / scale),
 		tool.collision_mask,

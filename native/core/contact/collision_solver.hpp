@@ -67,10 +67,10 @@ void factorize(const double* matrix, int n, double* l) noexcept;
 void solve_with_friction(ImpulseSpace& space, const double* velocity, const double* base, double* impulse,
                          CollisionWorkspace& workspace, SolverReport& report) noexcept;
 
-/// Lemke's method on w = M z + q, w >= 0, z >= 0, w z = 0. `tableau` is size x (size + 2): M on entry in the
-/// first columns, q in the last. `z` (size) is the answer. False when none was found within the bound on
+/// Lemke's method on w = M z + q, w >= 0, z >= 0, w z = 0. `values` is n x (n + 2): M on entry in the
+/// first columns, q in the last. `z` (n) is the answer. False when none was found within the bound on
 /// work.
-bool solve_complementarity(double* tableau, int size, double* z, SolverReport& report) noexcept;
+bool solve_complementarity(double* values, int n, double* z, SolverReport& report) noexcept;
 
 /// Smallest p with rows rows^T p = target in the sense of least squares, singular values below 1e-9 of the
 /// largest left out; `rows` (count x width, row by row) is destroyed, `vectors` is count x count scratch.

@@ -210,7 +210,7 @@ void Session::step() {
     write_report(gated, wanted);
 }
 
-void Session::write_report(const GateOutput& gated, const Wrench& wanted) {
+void Session::write_report(const GateOutput& gate, const Wrench& command) {
     const Mapping& map = settings_.mapping;
     HapticReport& r = report_;
     r.step = data_->step;
@@ -220,8 +220,8 @@ void Session::write_report(const GateOutput& gated, const Wrench& wanted) {
     r.proxy = data_->pose;
     r.grip = grip_pose(model_->tool.grip, data_->pose);
     r.velocity = data_->velocity;
-    r.force = map.wrench_to_scene(gated.applied);
-    r.command = map.wrench_to_scene(wanted);
+    r.force = map.wrench_to_scene(gate.applied);
+    r.command = map.wrench_to_scene(command);
     r.contact = output_.contact;
     r.coupling = output_.coupling;
     r.hand = hand_force_;
@@ -236,8 +236,8 @@ void Session::write_report(const GateOutput& gated, const Wrench& wanted) {
     r.energy_injected = ledger_.injected();
     r.held = held_;
     r.armed = gate_.armed();
-    r.gate = gated.flags;
-    r.faults = gated.faults;
+    r.gate = gate.flags;
+    r.faults = gate.faults;
     r.fallbacks += output_.fell_back ? 1U : 0U;
     r.patch_overflow = data_->patches.overflow;
     r.movable_overflow = data_->movable_overflow;

@@ -32,7 +32,7 @@ struct Reach {
 Reach extrapolate(double age, double tick) {
     const double full = 2.0 * tick;
     if (age <= full)
-        return {std::max(age, 0.0), 1.0};
+        return {std::max(age, -full), 1.0}; // a tick's own time may lie a little ahead of the loop's
     const double u = std::min(age - full, k_rest);
     return {full + u - u * u / (2.0 * k_rest), 1.0 - u / k_rest};
 }

@@ -15,7 +15,7 @@ Variant DictionaryReader::take(const char* key, const std::vector<Variant::Type>
     read_.insert(key);
     if (!from_.has(key))
         return {};
-    const Variant value = from_[key];
+    Variant value = from_[key];
     if (std::find(types.begin(), types.end(), value.get_type()) != types.end())
         return value;
     problems_.add(place_ + key + " is " + Variant::get_type_name(value.get_type()).utf8() + ", must be " +

@@ -128,7 +128,7 @@ void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const doub
                          " was left out: it is not registered, or its pose or velocity is not a number.");
         }
     n.sequence = ++sequence_;
-    n.time = runner_->now();
+    n.time = realtime_ ? ticks_.tick(runner_->now(), tick) : runner_->now();
     n.tick = tick;
     n.gravity = gravity;
     n.echo_step = echo_step_;
@@ -168,6 +168,7 @@ void HapticWorld::start(bool realtime, double record_seconds, Problems& problems
     realtime_ = realtime;
     sequence_ = 0;
     ve_ticks_ = 0;
+    ticks_.reset();
     echo_step_ = 0;
     echo_count_ = 0;
     taken_.clear();

@@ -6,7 +6,8 @@
 #include <thread>
 
 /// Changes from build to build; the build makes its source.
-extern const long probe_generation;
+extern const long
+    probe_generation; // NOLINT(readability-identifier-naming): the reload test writes its definition
 
 namespace haptics {
 

@@ -72,7 +72,10 @@ TEST_SUITE("the real-time guard" * doctest::skip(!RealtimeGuard::traps())) {
             g_sink = std::malloc(8);
             std::free(g_sink);
         });
-        check_trapped(Violation::allocation, "malloc", [] { g_sink = std::make_unique<int>(1).get(); });
+        check_trapped(Violation::allocation, "malloc", [] {
+            const auto made = std::make_unique<int>(1);
+            g_sink = made.get();
+        });
         check_trapped(Violation::allocation, "calloc", [] {
             g_sink = std::calloc(1, 8);
             std::free(g_sink);
@@ -84,7 +87,10 @@ TEST_SUITE("the real-time guard" * doctest::skip(!RealtimeGuard::traps())) {
             std::free(g_sink);
             g_sink = nullptr;
         });
-        check_trapped(Violation::allocation, "malloc", [] { g_sink = std::string(100, 'x').data(); });
+        check_trapped(Violation::allocation, "malloc", [] {
+            std::string text(100, 'x');
+            g_sink = text.data();
+        });
         int* volatile kept[2] = {new int(1), new int(2)};
         int next = 0;
         check_trapped(Violation::deallocation, "free", [&] { delete kept[next++]; });
@@ -214,7 +220,8 @@ TEST_SUITE("the real-time guard" * doctest::skip(!RealtimeGuard::traps())) {
         RealtimeGuard guard;
         std::thread other([] {
             for (int i = 0; i < 100; ++i) {
-                g_sink = std::make_unique<int>(i).get();
+                const auto made = std::make_unique<int>(i);
+                g_sink = made.get();
             }
         });
         const timespec brief{0, 1000000};

@@ -5,7 +5,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstring>
+#include <bit>
+#include <cstdint>
 #include <random>
 
 #include "contact_scenes.hpp"
@@ -71,7 +72,8 @@ std::unique_ptr<BodySet> random_tool(Random& random) {
 
 bool same_bits(const Patch& p, const Patch& q) {
     const auto same = [](const Vec2& a, const Vec2& b) {
-        return std::memcmp(a.data(), b.data(), sizeof(Vec2)) == 0;
+        return std::bit_cast<std::uint64_t>(a.x()) == std::bit_cast<std::uint64_t>(b.x()) &&
+               std::bit_cast<std::uint64_t>(a.y()) == std::bit_cast<std::uint64_t>(b.y());
     };
     bool equal = p.feature_a == q.feature_a && p.feature_b == q.feature_b && same(p.normal, q.normal) &&
                  p.point_count == q.point_count;

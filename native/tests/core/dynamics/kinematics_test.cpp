@@ -4,7 +4,6 @@
 
 using namespace haptics;
 using haptics::testing::Linkage;
-using haptics::testing::random_vector;
 using haptics::testing::randomize;
 
 namespace {

@@ -9,7 +9,7 @@ namespace {
 
 // a box above the floor with everything at hand
 struct Scene {
-    explicit Scene(const Surface& surface, double height = 0.001, Vec2 velocity = Vec2::Zero())
+    explicit Scene(const Surface& surface, double height = 0.001, const Vec2& velocity = Vec2::Zero())
         : model(shared::box_tool())
         , data(std::make_unique<Data>()) {
         reset(model, *data, Pose(0.0, 0.01 + height, 0.0));

@@ -51,8 +51,9 @@ Clicks follow(double frame_rate, Frames frames) {
             device.set_target({now, Pose(pixel(at.x()), pixel(at.y()), at.z())});
             ++count;
             // two frames within a millisecond, then none for two frames
-            next =
-                frames == Frames::bunched ? (count / 2) * 2.0 * frame + (count % 2) * 1.0e-3 : count * frame;
+            next = frames == Frames::bunched
+                       ? static_cast<double>(count / 2) * 2.0 * frame + (count % 2) * 1.0e-3
+                       : count * frame;
             if (frames == Frames::jittered)
                 next += frame * random.uniform(-0.3, 0.3);
         }

@@ -5,6 +5,7 @@
 #include <haptics/classes/world_settings.hpp>
 #include <haptics/realtime/haptic_runner.hpp>
 #include <haptics/realtime/host_steal.hpp>
+#include <haptics/realtime/tick_clock.hpp>
 
 #include <atomic>
 #include <deque>
@@ -86,6 +87,7 @@ class HapticWorld {
     std::unique_ptr<HandHook> hand_;
     std::unique_ptr<HapticRunner> runner_;
     HostSteal steal_;
+    TickClock ticks_;
     bool realtime_{false};
     CouplingGains gains_;
     HapticReport report_;
