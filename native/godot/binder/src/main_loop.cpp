@@ -39,7 +39,8 @@ MainLoopCallbacks::Id add(std::vector<Entry>& list, MainLoopCallbacks::Callback 
 void run(const std::vector<Entry>& list) {
     // by index and by copy: a callback may add and remove
     for (std::size_t i = 0; i < list.size(); ++i) {
-        Entry entry = list[i];
+        const Entry entry =
+            list[i]; // NOLINT(performance-unnecessary-copy-initialization): it may be removed meanwhile
         try {
             entry.callback();
         } catch (const std::exception& exception) {
