@@ -39,8 +39,9 @@ MainLoopCallbacks::Id add(std::vector<Entry>& list, MainLoopCallbacks::Callback 
 void run(const std::vector<Entry>& list) {
     // by index and by copy: a callback may add and remove
     for (std::size_t i = 0; i < list.size(); ++i) {
-        const Entry entry =
-            list[i]; // NOLINT(performance-unnecessary-copy-initialization): it may be removed meanwhile
+        // it may be removed meanwhile
+        // NOLINTNEXTLINE(performance-unnecessary-copy-initialization)
+        const Entry entry = list[i];
         try {
             entry.callback();
         } catch (const std::exception& exception) {
