@@ -70,5 +70,10 @@ func is_touching() -> bool:
 	return world != null and world.get_tool() == self and not world.get_contacts().is_empty()
 
 
+## Pushes an error for every problem of this tool that was not told before.
+func tell_problems() -> void:
+	_warnings.say()
+
+
 func _get_configuration_warnings() -> PackedStringArray:
 	return _warnings.shown()

@@ -217,6 +217,10 @@ func start() -> bool:
 		return true
 	if Engine.is_editor_hint() or Gateway.server() == null or find_for(self) != self:
 		return false
+	# before the loop moves it: a tool that starts inside of a wall is soon out of it
+	var tool := get_tool()
+	if tool != null:
+		tool.tell_problems()
 	var session := Session.new(self)
 	var problems := session.start()
 	_warnings.say_these(problems)
