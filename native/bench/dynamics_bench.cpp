@@ -22,8 +22,8 @@ struct Bench {
     LinkageData data;
     ArticulatedFactor factor;
     DenseDynamics dense;
-    JointVector force;
-    JointVector acceleration;
+    LinkageVector force;
+    LinkageVector acceleration;
 
     explicit Bench(const LinkageSpec& spec) {
         if (!build_model(spec, model).empty()) {

@@ -57,7 +57,7 @@ std::vector<FigureError> validate(const SessionSettings& s) {
 }
 
 Session::Session(const SessionSettings& settings, const Model& model, const OutputGate& gate,
-                 DevicePort& device, const Pose& start)
+                 DevicePort& device, const LinkageVector& start)
     : settings_(settings)
     , model_(std::make_unique<Model>(model))
     , data_(std::make_unique<Data>())
@@ -74,7 +74,7 @@ Session::Session(const SessionSettings& settings, const Model& model, const Outp
         gains_ = default_gains(device_mass_, loop_mobility(), settings_.step, settings_.device_delay,
                                settings_.velocity_window);
     hold(settings_.hold_at_start);
-    report_.grip = grip_pose(model_->tool.grip, data_->pose);
+    report_.grip = grip_pose(data_->grip, data_->pose);
     report_.proxy = data_->pose;
     report_.device = handle_ + grab_offset_;
     report_.held = held_;
@@ -82,7 +82,7 @@ Session::Session(const SessionSettings& settings, const Model& model, const Outp
 
 void Session::hold(bool held) {
     if (held && grasp_ == 0.0)
-        grab_offset_ = grip_pose(model_->tool.grip, data_->pose) - handle_;
+        grab_offset_ = grip_pose(data_->grip, data_->pose) - handle_;
     held_ = held;
     impulses_.drop();
 }
@@ -138,7 +138,7 @@ void Session::read_device() {
 void Session::run_model() {
     const double h = settings_.step;
     if (settings_.coupling == Coupling::direct) {
-        const Pose center = center_pose(model_->tool.grip, handle_ + grab_offset_);
+        const Pose center = center_pose(data_->grip, handle_ + grab_offset_);
         Twist velocity = handle_velocity_;
         const Vec2 arm = center.head<2>() - (handle_ + grab_offset_).head<2>();
         velocity.head<2>() = velocity_at(handle_velocity_, arm);
@@ -218,7 +218,7 @@ void Session::write_report(const GateOutput& gate, const Wrench& command) {
     r.device = handle_ + grab_offset_;
     r.device_velocity = handle_velocity_;
     r.proxy = data_->pose;
-    r.grip = grip_pose(model_->tool.grip, data_->pose);
+    r.grip = grip_pose(data_->grip, data_->pose);
     r.velocity = data_->velocity;
     r.force = map.wrench_to_scene(gate.applied);
     r.command = map.wrench_to_scene(command);

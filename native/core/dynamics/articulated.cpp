@@ -58,7 +58,7 @@ inline void carry(ArticulatedBody& parent, double dx, double dy, double j, doubl
 }
 
 /// Inverse of the base's articulated inertia, by elimination of the translation.
-Mat3 invert_base(const ArticulatedBody& base, const JointVector* added) {
+Mat3 invert_base(const ArticulatedBody& base, const LinkageVector* added) {
     Mat3 inertia;
     inertia << base.mxx, base.mxy, base.hx, base.mxy, base.myy, base.hy, base.hx, base.hy, base.j;
     if (added != nullptr) {
@@ -80,8 +80,8 @@ Mat3 invert_base(const ArticulatedBody& base, const JointVector* added) {
 }
 
 /// The inward pass. `force` null factorizes only.
-void sweep_inwards(const LinkageModel& model, const LinkageData& data, const JointVector* force,
-                   const JointVector* added, ArticulatedFactor& factor) {
+void sweep_inwards(const LinkageModel& model, const LinkageData& data, const LinkageVector* force,
+                   const LinkageVector* added, ArticulatedFactor& factor) {
     const double keep = force != nullptr && model.coriolis ? 1.0 : 0.0;
     for (int slot = model.body_count; slot > 0; --slot) {
         const BodyModel& body = model.body[slot];
@@ -150,15 +150,15 @@ struct Motion {
 
 } // namespace
 
-void factorize(const LinkageModel& model, const LinkageData& data, const JointVector* added,
+void factorize(const LinkageModel& model, const LinkageData& data, const LinkageVector* added,
                ArticulatedFactor& factor) {
     load_bodies(model, data, false, factor);
     sweep_inwards(model, data, nullptr, added, factor);
 }
 
-void articulated_acceleration(const LinkageModel& model, const LinkageData& data, const JointVector& force,
-                              const JointVector* added, ArticulatedFactor& factor,
-                              JointVector& acceleration) {
+void articulated_acceleration(const LinkageModel& model, const LinkageData& data, const LinkageVector& force,
+                              const LinkageVector* added, ArticulatedFactor& factor,
+                              LinkageVector& acceleration) {
     load_bodies(model, data, model.coriolis, factor);
     sweep_inwards(model, data, &force, added, factor);
     const double keep = model.coriolis ? 1.0 : 0.0;
@@ -208,7 +208,7 @@ void articulated_acceleration(const LinkageModel& model, const LinkageData& data
 }
 
 void solve(const LinkageModel& model, const LinkageData& data, const ArticulatedFactor& factor,
-           const JointVector& right_side, JointVector& solution) {
+           const LinkageVector& right_side, LinkageVector& solution) {
     // bias wrenches inwards
     Motion bias[k_body_slots];
     double free_force[k_body_slots];

@@ -206,8 +206,8 @@ HAPTICS_AVX2 void advance_avx2(const LinkageModel& model, LinkageData& data, con
 
 } // namespace
 
-void closed_chain_acceleration(const LinkageModel& model, const LinkageData& data, const JointVector& force,
-                               JointVector& acceleration) {
+void closed_chain_acceleration(const LinkageModel& model, const LinkageData& data, const LinkageVector& force,
+                               LinkageVector& acceleration) {
     acceleration.resize(model.freedoms);
 #if HAPTICS_MULTIVERSION
     if (k_has_avx2) {
@@ -217,8 +217,8 @@ void closed_chain_acceleration(const LinkageModel& model, const LinkageData& dat
     accelerate_any(model, data, force.data(), acceleration.data());
 }
 
-void closed_chain_step(const LinkageModel& model, LinkageData& data, const JointVector& force, double dt,
-                       JointVector& acceleration) {
+void closed_chain_step(const LinkageModel& model, LinkageData& data, const LinkageVector& force, double dt,
+                       LinkageVector& acceleration) {
     acceleration.resize(model.freedoms);
 #if HAPTICS_MULTIVERSION
     if (k_has_avx2) {

@@ -2,8 +2,8 @@
 
 namespace haptics {
 
-void dense_acceleration(const LinkageModel& model, const LinkageData& data, const JointVector& force,
-                        const JointVector* added, DenseDynamics& dense, JointVector& acceleration) {
+void dense_acceleration(const LinkageModel& model, const LinkageData& data, const LinkageVector& force,
+                        const LinkageVector* added, DenseDynamics& dense, LinkageVector& acceleration) {
     mass_matrix(model, data, dense.mass);
     bias_forces(model, data, dense.bias);
     if (added != nullptr) {

@@ -26,8 +26,8 @@ void prepare_dynamics(const LinkageModel& model, LinkageData& data) {
     }
 }
 
-void forward_dynamics(const LinkageModel& model, const LinkageData& data, const JointVector& force,
-                      ArticulatedFactor& workspace, JointVector& acceleration) {
+void forward_dynamics(const LinkageModel& model, const LinkageData& data, const LinkageVector& force,
+                      ArticulatedFactor& workspace, LinkageVector& acceleration) {
     switch (model.kernel) {
     case DynamicsKernel::rigid_body:
         acceleration.resize(3);
@@ -45,8 +45,8 @@ void forward_dynamics(const LinkageModel& model, const LinkageData& data, const 
     }
 }
 
-void step_semi_implicit(const LinkageModel& model, LinkageData& data, const JointVector& force, double dt,
-                        ArticulatedFactor& workspace, JointVector& acceleration) {
+void step_semi_implicit(const LinkageModel& model, LinkageData& data, const LinkageVector& force, double dt,
+                        ArticulatedFactor& workspace, LinkageVector& acceleration) {
     if (model.kernel == DynamicsKernel::closed_chain) {
         closed_chain_step(model, data, force, dt, acceleration);
         return;

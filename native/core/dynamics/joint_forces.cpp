@@ -46,7 +46,7 @@ JointForce joint_force(const JointSpec& joint, double q, double v) {
 
 } // namespace
 
-void add_joint_forces(const LinkageModel& model, const LinkageData& data, JointVector& force) {
+void add_joint_forces(const LinkageModel& model, const LinkageData& data, LinkageVector& force) {
     if (!model.has_passive) {
         return;
     }
@@ -56,7 +56,7 @@ void add_joint_forces(const LinkageModel& model, const LinkageData& data, JointV
 }
 
 void add_joint_forces_implicit(const LinkageModel& model, const LinkageData& data, double dt,
-                               JointVector& force, JointVector& added) {
+                               LinkageVector& force, LinkageVector& added) {
     added.setZero(model.freedoms);
     if (!model.has_passive) {
         return;

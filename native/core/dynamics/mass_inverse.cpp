@@ -3,10 +3,10 @@
 namespace haptics {
 
 void inverse_mass_matrix(const LinkageModel& model, const LinkageData& data, const ArticulatedFactor& factor,
-                         JointMatrix& inverse) {
+                         LinkageMatrix& inverse) {
     const int n = model.freedoms;
     inverse.resize(n, n);
-    JointVector column(n);
+    LinkageVector column(n);
     for (int i = 0; i < n; ++i) {
         column.setZero();
         column[i] = 1.0;

@@ -61,7 +61,7 @@ void project(const LinkageModel& model, const LinkageData& data, int slot, const
 
 } // namespace
 
-void mass_matrix(const LinkageModel& model, const LinkageData& data, JointMatrix& mass) {
+void mass_matrix(const LinkageModel& model, const LinkageData& data, LinkageMatrix& mass) {
     mass.setZero(model.freedoms, model.freedoms);
     Composite part[k_body_slots];
     for (int slot = 1; slot <= model.body_count; ++slot) {
@@ -105,12 +105,14 @@ void mass_matrix(const LinkageModel& model, const LinkageData& data, JointMatrix
     }
 }
 
-void inverse_dynamics(const LinkageModel& model, const LinkageData& data, const JointVector& acceleration,
-                      JointVector& force) {
+namespace {
+
+void newton_euler(const LinkageModel& model, const LinkageData& data, const Vec2& gravity,
+                  const LinkageVector& acceleration, LinkageVector& force) {
     const double keep = model.coriolis ? 1.0 : 0.0;
     Planar motion[k_body_slots];
     Planar wrench[k_body_slots];
-    motion[0] = {0.0, -model.gravity.x(), -model.gravity.y()};
+    motion[0] = {0.0, -gravity.x(), -gravity.y()};
     for (int slot = 1; slot <= model.body_count; ++slot) {
         const BodyModel& body = model.body[slot];
         Planar& own = motion[slot];
@@ -154,10 +156,21 @@ void inverse_dynamics(const LinkageModel& model, const LinkageData& data, const 
     }
 }
 
-void bias_forces(const LinkageModel& model, const LinkageData& data, JointVector& bias) {
-    JointVector none;
+} // namespace
+
+void inverse_dynamics(const LinkageModel& model, const LinkageData& data, const LinkageVector& acceleration,
+                      LinkageVector& force) {
+    newton_euler(model, data, model.gravity, acceleration, force);
+}
+
+void bias_forces(const LinkageModel& model, const LinkageData& data, const Vec2& gravity, LinkageVector& bias) {
+    LinkageVector none;
     none.setZero(model.freedoms);
-    inverse_dynamics(model, data, none, bias);
+    newton_euler(model, data, gravity, none, bias);
+}
+
+void bias_forces(const LinkageModel& model, const LinkageData& data, LinkageVector& bias) {
+    bias_forces(model, data, model.gravity, bias);
 }
 
 } // namespace haptics

@@ -355,8 +355,8 @@ HAPTICS_AVX2 void run_avx2(const LinkageModel& model, const LinkageData& data, c
 
 } // namespace
 
-void split_chain_acceleration(const LinkageModel& model, const LinkageData& data, const JointVector& force,
-                              JointVector& acceleration) {
+void split_chain_acceleration(const LinkageModel& model, const LinkageData& data, const LinkageVector& force,
+                              LinkageVector& acceleration) {
     acceleration.resize(model.freedoms);
 #if HAPTICS_MULTIVERSION
     if (k_has_avx2) {

@@ -1,9 +1,16 @@
 // From patches to rows in configuration space.
 //
-// The system's velocity is v = (tool; movable 1; movable 2; ...), three entries each, about the centers of
-// mass. For a point p with normal n between bodies a and b the gap rate is n . (v_a(p) - v_b(p)). A side that
-// is in the system gives the row [n_x, n_y, r x n] (minus for b); a side that is not gives the number
-// `drive`, so that gap rate = row v - drive.
+// The system's velocity is v = (tool; movable 1; movable 2; ...): the rates of the tool's coordinates, then
+// three entries for each movable, about its center of mass. For a point p with normal n between bodies a and
+// b the gap rate is n . (v_a(p) - v_b(p)). A side that is in the system gives the row n J(p), for a rigid
+// body [n_x, n_y, r x n] (minus for b); a side that is not gives the number `drive`, so that gap rate =
+// row v - drive.
+//
+// Joints of a linkage join in as rows of their own. A limit is a normal row +-e_i with the spring and damper of
+// the JointSpec, or those of the paper's wall at a lever of 0.1 m when it has none; it takes part in collisions
+// without restitution. Friction is a tangent row e_i with the joint's Coulomb friction as a constant bound. Its
+// spring is as stiff as every integrator bears: with m = 1 / (D^-1)_ii the semi-implicit one needs
+// m > (k h^2 + 2 b h) / 4, and k h^2 = b h / 2 = m / 10 stay far below it also where joints couple.
 //
 // Only movables that a chain of contacts joins to the tool are in the system: the others touch nothing that
 // the hand can feel, and the environment moves them.
@@ -16,6 +23,11 @@ namespace haptics::local {
 namespace {
 
 constexpr int k_none = -1;
+
+// wall of the paper at a lever of 0.1 m
+constexpr double k_limit_stiffness = 15000.0;
+constexpr double k_limit_damping = 20.0;
+constexpr double k_limit_lever = 0.1;
 
 // first system row of a body of the patch list (tool links first, then neighbors), or k_none
 int first_row(const Data& data, std::int32_t body) {
@@ -47,7 +59,7 @@ std::int32_t movable_of(const Data& data, std::int32_t body) {
 void choose_island(Data& data) {
     for (int i = 0; i < data.movable_count; ++i)
         data.movable[static_cast<std::size_t>(i)].row = k_none;
-    int rows = 3;
+    int rows = data.system.tool_freedoms;
     bool grew = true;
     while (grew) {
         grew = false;
@@ -69,18 +81,21 @@ void choose_island(Data& data) {
 }
 
 // adds `sign` times the row of direction `n` at `p` on `body` to `target`, or its velocity to `drive`
-template <typename Row>
-void add_side(const Data& data, std::int32_t body, int row, const Vec2& p, const Vec2& n, double sign,
-              Row&& target, double& drive) {
+void add_side(const Model& model, const Data& data, std::int32_t body, int row, const Vec2& p, const Vec2& n,
+              double sign, double* target, double& drive) {
+    if (body < data.tool.body_count) {
+        add_tool_row(model, data, body, p, n, sign, target);
+        return;
+    }
     const Body& b = body_of(data, body);
     const Vec2 arm = p - b.pose.head<2>();
     if (row == k_none) {
         drive -= sign * n.dot(velocity_at(b.velocity, arm));
         return;
     }
-    target(row) += sign * n.x();
-    target(row + 1) += sign * n.y();
-    target(row + 2) += sign * cross(arm, n);
+    target[row] += sign * n.x();
+    target[row + 1] += sign * n.y();
+    target[row + 2] += sign * cross(arm, n);
 }
 
 void assemble_mass(const Model& model, Data& data) {
@@ -99,7 +114,7 @@ void assemble_mass(const Model& model, Data& data) {
         s.external(row) = mass * data.gravity.x();
         s.external(row + 1) = mass * data.gravity.y();
     };
-    set(0, model.tool.mass, model.tool.inertia);
+    write_tool_mass(model, data);
     for (int i = 0; i < data.movable_count; ++i) {
         const MovableState& m = data.movable[static_cast<std::size_t>(i)];
         if (m.row == k_none)
@@ -107,14 +122,72 @@ void assemble_mass(const Model& model, Data& data) {
         const Body& b = data.neighbors.body[static_cast<std::size_t>(m.body)];
         set(m.row, b.mass, b.inertia);
     }
-    load_velocities(data);
+    load_velocities(model, data);
+}
+
+void add_limit(const JointSpec& joint, int i, double dt, Data& data) {
+    ContactSystem& s = data.system;
+    const double q = data.linkage.position[i];
+    const double below = q - joint.lower_limit;
+    const double above = joint.upper_limit - q;
+    const double gap = std::min(below, above);
+    // what it can reach within the step, with room for what pushes it
+    if (!(gap < 2.0 * dt * std::abs(data.linkage.velocity[i]) + 1e-2))
+        return;
+    const double lever = joint.kind == JointKind::prismatic ? 1.0 : k_limit_lever * k_limit_lever;
+    const bool given = joint.limit_stiffness > 0.0 || joint.limit_damping > 0.0;
+    PatchRow& t = s.row[static_cast<std::size_t>(s.patches)];
+    t = PatchRow{};
+    t.freedom = i;
+    t.first_point = s.points;
+    t.point_count = 1;
+    t.continuing = data.joint[i].at_limit;
+    PointRow& r = s.point[static_cast<std::size_t>(s.points)];
+    r = PointRow{};
+    r.patch = s.patches;
+    r.gap = gap;
+    r.stiffness = given ? joint.limit_stiffness : k_limit_stiffness * lever;
+    r.damping = given ? joint.limit_damping : k_limit_damping * lever;
+    r.was_apart = gap > 0.0;
+    s.normal_rows(s.points, i) = below <= above ? 1.0 : -1.0;
+    ++s.points;
+    ++s.patches;
+}
+
+void add_joint_friction(const Model& model, const JointSpec& joint, int i, double dt, Data& data) {
+    need_inverse(model, data);
+    ContactSystem& s = data.system;
+    const double mass = 1.0 / s.inverse_mass(i, i);
+    PatchRow& t = s.row[static_cast<std::size_t>(s.patches)];
+    t = PatchRow{};
+    t.freedom = i;
+    t.first_point = s.points;
+    t.stiffness = 0.1 * mass / (dt * dt);
+    t.damping = 0.2 * mass / dt;
+    t.bound = joint.friction;
+    t.spring = data.joint[i].slip_spring;
+    t.was_sliding = data.joint[i].sliding;
+    s.tangent_rows(s.patches, i) = 1.0;
+    ++s.patches;
+}
+
+// limits within reach, and friction, of the tool's joints
+void assemble_joints(const Model& model, Data& data, double dt) {
+    const LinkageModel& linkage = model.tool.linkage;
+    if (!model.tool.articulated || !linkage.has_passive)
+        return;
+    for (int i = linkage.floating ? 3 : 0; i < linkage.freedoms; ++i) {
+        add_limit(linkage.passive[i], i, dt, data);
+        if (linkage.passive[i].friction > 0.0)
+            add_joint_friction(model, linkage.passive[i], i, dt, data);
+    }
 }
 
 } // namespace
 
-void load_velocities(Data& data) {
+void load_velocities(const Model& model, Data& data) {
+    load_tool(model, data);
     ContactSystem& s = data.system;
-    s.velocity.head<3>() = data.velocity;
     for (int i = 0; i < data.movable_count; ++i) {
         const MovableState& m = data.movable[static_cast<std::size_t>(i)];
         if (m.row != k_none)
@@ -122,9 +195,9 @@ void load_velocities(Data& data) {
     }
 }
 
-void store_velocities(Data& data) {
+void store_velocities(const Model& model, Data& data) {
+    store_tool(model, data);
     const ContactSystem& s = data.system;
-    data.velocity = s.velocity.head<3>();
     for (int i = 0; i < data.movable_count; ++i) {
         MovableState& m = data.movable[static_cast<std::size_t>(i)];
         if (m.row != k_none)
@@ -132,15 +205,18 @@ void store_velocities(Data& data) {
     }
 }
 
-void assemble(const Model& model, Data& data) {
+void assemble(const Model& model, Data& data, double dt) {
+    ContactSystem& s = data.system;
+    s.tool_freedoms = model.tool.freedoms();
     choose_island(data);
     assemble_mass(model, data);
-    ContactSystem& s = data.system;
+    grip_rows(model, data, s.grip);
     const int n = s.freedoms;
+    const int joints = model.tool.articulated && model.tool.linkage.has_passive ? s.tool_freedoms : 0;
     s.points = 0;
     s.patches = 0;
-    s.normal_rows.setZero(2 * data.patches.count, n);
-    s.tangent_rows.setZero(data.patches.count, n);
+    s.normal_rows.setZero(2 * data.patches.count + joints, n);
+    s.tangent_rows.setZero(data.patches.count + 2 * joints, n);
     for (int i = 0; i < data.patches.count; ++i) {
         const Patch& p = data.patches.patch[static_cast<std::size_t>(i)];
         const int row_a = first_row(data, p.body_a);
@@ -160,7 +236,7 @@ void assemble(const Model& model, Data& data) {
         t.spring = p.memory.slip_spring;
         t.continuing = p.memory.state != ContactState::none;
         t.was_sliding = p.memory.state == ContactState::sliding;
-        if (row_a == 0 && p.body_b >= data.tool.body_count)
+        if (p.body_a < data.tool.body_count && p.body_b >= data.tool.body_count)
             t.movable = movable_of(data, p.body_b);
         Vec2 middle{0.0, 0.0};
         for (int k = 0; k < p.point_count; ++k) {
@@ -173,18 +249,19 @@ void assemble(const Model& model, Data& data) {
             r.stiffness = p.surface.stiffness * point.weight;
             r.damping = p.surface.damping * point.weight;
             r.was_apart = point.gap > 0.0;
-            auto row = s.normal_rows.row(s.points);
-            add_side(data, p.body_a, row_a, point.position, p.normal, 1.0, row, r.drive);
-            add_side(data, p.body_b, row_b, point.position, p.normal, -1.0, row, r.drive);
+            double* row = &s.normal_rows(s.points, 0);
+            add_side(model, data, p.body_a, row_a, point.position, p.normal, 1.0, row, r.drive);
+            add_side(model, data, p.body_b, row_b, point.position, p.normal, -1.0, row, r.drive);
             middle += point.weight * point.position;
             ++s.points;
         }
         const Vec2 tangent = perpendicular(p.normal);
-        auto row = s.tangent_rows.row(s.patches);
-        add_side(data, p.body_a, row_a, middle, tangent, 1.0, row, t.drive);
-        add_side(data, p.body_b, row_b, middle, tangent, -1.0, row, t.drive);
+        double* row = &s.tangent_rows(s.patches, 0);
+        add_side(model, data, p.body_a, row_a, middle, tangent, 1.0, row, t.drive);
+        add_side(model, data, p.body_b, row_b, middle, tangent, -1.0, row, t.drive);
         ++s.patches;
     }
+    assemble_joints(model, data, dt);
 }
 
 } // namespace haptics::local

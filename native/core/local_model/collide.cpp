@@ -59,6 +59,7 @@ bool collide(const Model& model, Data& data, StepOutput& output) {
     if (!hit)
         return false;
 
+    need_inverse(model, data);
     CollisionProblem& problem = data.collision;
     problem.resize(s.freedoms, count);
     problem.inverse_mass = s.inverse_mass;
@@ -78,12 +79,10 @@ bool collide(const Model& model, Data& data, StepOutput& output) {
     resolve_collisions(model.settings.collision_method, problem, data.workspace, data.solution);
     output.fell_back = output.fell_back || data.solution.fell_back;
 
-    const Vec3 before = s.velocity.head<3>();
+    const int n = s.tool_freedoms;
     s.velocity = data.solution.velocity;
-    const Mat3 j = grip_jacobian(model.tool.grip, data.pose);
-    output.grip_velocity_jump += j * (Vec3(s.velocity.head<3>()) - before);
-    output.collision_impulse +=
-        about_grip(model.tool.grip, data.pose, Wrench(data.solution.momentum_change.head<3>()));
+    output.grip_velocity_jump += s.grip * (s.velocity.head(n) - problem.velocity.head(n));
+    const Vec2 grip = grip_pose(data.grip, data.pose).head<2>();
     for (int c = 0; c < count; ++c) {
         const int i = chosen[static_cast<std::size_t>(c)];
         PointRow& p = s.point[static_cast<std::size_t>(i)];
@@ -94,14 +93,20 @@ bool collide(const Model& model, Data& data, StepOutput& output) {
             t.impulse += std::abs(normal);
         }
         p.was_apart = false;
+        if (t.patch < 0)
+            continue;
+        const Patch& patch = data.patches.patch[static_cast<std::size_t>(t.patch)];
+        if (patch.body_a < data.tool.body_count) {
+            const Vec2 impulse =
+                normal * patch.normal + data.solution.tangent_impulse(c) * perpendicular(patch.normal);
+            const Vec2 arm = patch.point[static_cast<std::size_t>(p.slot)].position - grip;
+            output.collision_impulse += Wrench(impulse.x(), impulse.y(), cross(arm, impulse));
+        }
         if (t.movable >= 0 || t.drive != 0.0 || p.drive != 0.0) {
             // work of the other side: impulse times its mean velocity, v_other = v_tool - gap rate
             const auto other = [&](const auto& row, double drive) {
-                const Vec3 on_tool = row.template head<3>().transpose();
-                const double before_rate = row.dot(data.collision.velocity) - drive;
-                const double after_rate = row.dot(s.velocity) - drive;
-                return 0.5 * (on_tool.dot(before) - before_rate + on_tool.dot(Vec3(s.velocity.head<3>())) -
-                              after_rate);
+                const FreedomVector sum = problem.velocity + s.velocity;
+                return 0.5 * (row.head(n).dot(sum.head(n)) - row.dot(sum)) + drive;
             };
             output.source_work +=
                 normal * other(s.normal_rows.row(i), p.drive) +
@@ -117,7 +122,9 @@ bool collide(const Model& model, Data& data, StepOutput& output) {
             data.solution.tangent_impulse(c) * s.tangent_rows.row(p.patch).segment<3>(m.row).transpose();
         m.given_step = data.step;
     }
-    store_velocities(data);
+    store_velocities(model, data);
+    // Coriolis forces of the rest of the step are those of the new velocity
+    write_tool_force(model, data);
     return true;
 }
 

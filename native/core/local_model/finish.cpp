@@ -43,11 +43,11 @@ void add_event(StepOutput& output, ContactEventKind kind, std::uint64_t body, do
 // motion of the tool and springs of its contacts
 double stored_energy(const Model& model, const Data& data) {
     const ContactSystem& s = data.system;
-    double energy = 0.5 * model.tool.mass * data.velocity.head<2>().squaredNorm() +
-                    0.5 * model.tool.inertia * data.velocity.z() * data.velocity.z();
+    double energy = tool_energy(model, data);
     for (int i = 0; i < s.patches; ++i) {
         const PatchRow& t = s.row[static_cast<std::size_t>(i)];
-        if (data.patches.patch[static_cast<std::size_t>(t.patch)].body_a >= data.tool.body_count)
+        if (t.patch >= 0 &&
+            data.patches.patch[static_cast<std::size_t>(t.patch)].body_a >= data.tool.body_count)
             continue;
         energy += 0.5 * t.stiffness * t.spring * t.spring;
         for (int k = 0; k < t.point_count; ++k) {
@@ -58,6 +58,17 @@ double stored_energy(const Model& model, const Data& data) {
     return energy;
 }
 
+// a joint remembers its friction's anchor, and that it rests against a limit
+void remember_joint(const ContactSystem& s, const PatchRow& t, Data& data) {
+    JointMemory& joint = data.joint[t.freedom];
+    if (t.point_count > 0) {
+        joint.at_limit = s.point[static_cast<std::size_t>(t.first_point)].gap <= 0.0;
+        return;
+    }
+    joint.slip_spring = t.spring;
+    joint.sliding = t.was_sliding;
+}
+
 bool contains(const std::array<std::uint64_t, k_max_patches>& ids, std::int32_t count, std::uint64_t id) {
     return std::find(ids.begin(), ids.begin() + count, id) != ids.begin() + count;
 }
@@ -66,10 +77,17 @@ bool contains(const std::array<std::uint64_t, k_max_patches>& ids, std::int32_t 
 
 void finish(const Model& model, Data& data, StepOutput& output) {
     ContactSystem& s = data.system;
+    end_tool_step(model, data);
+    for (int i = 0; i < k_max_freedoms && model.tool.articulated; ++i)
+        data.joint[i].at_limit = false;
     std::array<std::uint64_t, k_max_patches> touched;
     std::int32_t touched_count = 0;
     for (int i = 0; i < s.patches; ++i) {
         const PatchRow& t = s.row[static_cast<std::size_t>(i)];
+        if (t.patch < 0) {
+            remember_joint(s, t, data);
+            continue;
+        }
         Patch& p = data.patches.patch[static_cast<std::size_t>(t.patch)];
         const ContactState before = p.memory.state;
         const ContactState after = next_state(s, t);

@@ -1,8 +1,6 @@
-// The grip of a rigid tool: point r in body axes, held in position (2 rows) or in position and angle (3
-// rows). v_grip = v + omega x r, so J_h = [1 0 -r_y; 0 1 r_x; 0 0 1]; a force (F, tau) about the center of
-// mass c has the torque tau - r x F about the grip.
+// The grip: point r of the held link (of the rigid tool), from its center of mass, in its axes.
 
-#include "internal.hpp"
+#include <haptics/core/local_model/local_model.hpp>
 
 namespace haptics {
 
@@ -21,22 +19,4 @@ Twist grip_velocity(const Grip& grip, const Pose& pose, const Twist& velocity) {
     return {v.x(), v.y(), velocity.z()};
 }
 
-namespace local {
-
-Mat3 grip_jacobian(const Grip& grip, const Pose& pose) {
-    const Vec2 r = rotate(pose.z(), grip.point);
-    Mat3 j = Mat3::Identity();
-    j(0, 2) = -r.y();
-    j(1, 2) = r.x();
-    if (!grip.pose)
-        j(2, 2) = 0.0;
-    return j;
-}
-
-Wrench about_grip(const Grip& grip, const Pose& pose, const Wrench& about_center) {
-    const Vec2 r = rotate(pose.z(), grip.point);
-    return {about_center.x(), about_center.y(), about_center.z() - cross(r, about_center.head<2>())};
-}
-
-} // namespace local
 } // namespace haptics

@@ -5,8 +5,9 @@
 
 namespace haptics::local {
 
-// Writes the contacts of `data.patches` as rows of `data.system`.
-void assemble(const Model& model, Data& data);
+// Writes the contacts of `data.patches` and the joints of the tool as rows of `data.system`; `dt` is the
+// length of the coming step.
+void assemble(const Model& model, Data& data, double dt);
 
 // Forces of contacts, friction, coupling and gravity over `dt`, then new velocities and poses. `left` is the
 // time from the end of this sub-step to the end of the haptic step. Means are added to `output` with the
@@ -30,14 +31,38 @@ void finish(const Model& model, Data& data, StepOutput& output);
 // Moves kinematic bodies and free movables to where they are `dt` later, and blends in corrections.
 void move_neighbors(Data& data, double dt);
 
-// Copies the tool's velocity and pose and those of the island's movables between Data and the system.
-void store_velocities(Data& data);
-void load_velocities(Data& data);
+// Copies the velocities of the tool and of the island's movables between Data and the system.
+void store_velocities(const Model& model, Data& data);
+void load_velocities(const Model& model, Data& data);
 
-// Row (with respect to the grip) of a wrench about the tool's center of mass.
-Wrench about_grip(const Grip& grip, const Pose& pose, const Wrench& about_center);
-// J_h of the rigid tool: grip velocity from the velocity of the center of mass; the third row is zero for a
-// point grip.
-Mat3 grip_jacobian(const Grip& grip, const Pose& pose);
+// The tool in configuration space (proxy.cpp). Velocities between Data and the first entries of the system:
+void load_tool(const Model& model, Data& data);
+void store_tool(const Model& model, Data& data);
+// motion of `dt` at the present velocity; a linkage's coordinates and links wait for the end of the step
+void move_tool(const Model& model, Data& data, double dt);
+void end_tool_step(const Model& model, Data& data);
+// poses and velocities of links, held link and kinematics that follow from the state
+void place_tool(const Model& model, Data& data);
+// D, D^-1, joint springs and all forces but those of contacts and coupling
+void write_tool_mass(const Model& model, Data& data);
+// those forces alone, after the velocity changed
+void write_tool_force(const Model& model, Data& data);
+// stretch, stiffness and damping of the joint with that freedom
+Vec3 joint_spring(const Model& model, const Data& data, int freedom);
+// dense D and D^-1 of a long linkage, which are made only where they are needed
+void need_mass(const Model& model, Data& data);
+void need_inverse(const Model& model, Data& data);
+// J_h D^-1 J_h' for the rows and the factor at hand
+Mat3 mobility(const Model& model, Data& data);
+// J_h D^-1 force
+Vec3 tool_response(const Model& model, Data& data, const LinkageVector& force);
+// energy of the tool's motion and joint springs
+double tool_energy(const Model& model, const Data& data);
+// row += sign direction^T J of the point of `link` at the scene position `point`
+void add_tool_row(const Model& model, const Data& data, int link, const Vec2& point, const Vec2& direction,
+                  double sign, double* row);
+// J_h, and J_h' q'
+void grip_rows(const Model& model, const Data& data, GripRows& rows);
+Vec3 grip_bias(const Model& model, const Data& data);
 
 } // namespace haptics::local

@@ -223,8 +223,6 @@ void move_neighbors(Data& data, double dt) {
             data.neighbors.body[static_cast<std::size_t>(m.body)].velocity = s.velocity;
         }
     }
-    data.tool.body[0].pose = data.pose;
-    data.tool.body[0].velocity = data.velocity;
 }
 
 } // namespace local

@@ -15,9 +15,16 @@
 
 namespace haptics {
 
-void reset(const Model& model, Data& data, const Pose& pose) {
-    data.pose = pose;
-    data.velocity.setZero();
+void reset(const Model& model, Data& data, const LinkageVector& configuration) {
+    if (model.tool.articulated) {
+        reset(model.tool.linkage, data.linkage);
+        data.linkage.position = configuration;
+    } else {
+        data.pose = configuration;
+        data.velocity.setZero();
+    }
+    data.joint = {};
+    data.grip = model.tool.grip;
     data.patches.count = 0;
     data.touched_count = 0;
     data.tool.body_count = model.tool.shape.body_count;
@@ -25,12 +32,15 @@ void reset(const Model& model, Data& data, const Pose& pose) {
     std::copy_n(model.tool.shape.body.begin(), model.tool.shape.body_count, data.tool.body.begin());
     std::copy_n(model.tool.shape.piece.begin(), model.tool.shape.piece_count, data.tool.piece.begin());
     local::move_neighbors(data, 0.0);
+    local::place_tool(model, data);
 }
 
-Mat3 grip_mobility(const Model& model, const Data& data) {
-    const Mat3 j = local::grip_jacobian(model.tool.grip, data.pose);
-    const Vec3 inverse(1.0 / model.tool.mass, 1.0 / model.tool.mass, 1.0 / model.tool.inertia);
-    return j * inverse.asDiagonal() * j.transpose();
+Mat3 grip_mobility(const Model& model, Data& data) {
+    ContactSystem& s = data.system;
+    local::grip_rows(model, data, s.grip);
+    if (model.tool.articulated)
+        factorize(model.tool.linkage, data.linkage, nullptr, data.factor);
+    return local::mobility(model, data);
 }
 
 void step_direct(const Model& model, Data& data, const Pose& pose, const Twist& velocity, double dt,
@@ -39,10 +49,11 @@ void step_direct(const Model& model, Data& data, const Pose& pose, const Twist& 
     data.pose = pose;
     data.velocity = velocity;
     local::move_neighbors(data, dt);
+    local::place_tool(model, data);
     data.previous = data.patches;
     detect_patches(data.tool, data.neighbors, {model.settings.margin, dt}, data.previous, data.patches);
-    local::assemble(model, data);
-    output.grip_mobility = grip_mobility(model, data);
+    local::assemble(model, data, dt);
+    output.grip_mobility = local::mobility(model, data);
     local::explicit_forces(model, data, dt, output);
     local::finish(model, data, output);
     ++data.step;
@@ -50,11 +61,12 @@ void step_direct(const Model& model, Data& data, const Pose& pose, const Twist& 
 
 void step(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output) {
     output = StepOutput{};
+    local::place_tool(model, data); // who runs the model may have set a state
     data.previous = data.patches;
     detect_patches(data.tool, data.neighbors, {model.settings.margin, dt}, data.previous, data.patches);
-    local::assemble(model, data);
+    local::assemble(model, data, dt);
 
-    output.grip_mobility = grip_mobility(model, data);
+    output.grip_mobility = local::mobility(model, data);
 
     double left = dt;
     for (int event = 0; event < model.settings.max_events; ++event) {

@@ -26,8 +26,8 @@ struct Linkage {
     }
 };
 
-inline JointVector random_vector(shared::Random& random, int size, double reach) {
-    JointVector vector(size);
+inline LinkageVector random_vector(shared::Random& random, int size, double reach) {
+    LinkageVector vector(size);
     for (int i = 0; i < size; ++i) {
         vector[i] = random.uniform(-reach, reach);
     }
@@ -51,9 +51,9 @@ inline void randomize(Linkage& linkage, shared::Random& random, int round) {
 }
 
 /// D as the sum of J^T diag(m, m, I) J over the links' centers of mass: independent of the composite method.
-inline JointMatrix summed_mass_matrix(const Linkage& linkage) {
+inline LinkageMatrix summed_mass_matrix(const Linkage& linkage) {
     const LinkageModel& model = linkage.model;
-    JointMatrix mass;
+    LinkageMatrix mass;
     mass.setZero(model.freedoms, model.freedoms);
     for (int link = 0; link < model.link_count; ++link) {
         PointJacobian jacobian;
@@ -66,9 +66,9 @@ inline JointMatrix summed_mass_matrix(const Linkage& linkage) {
 }
 
 /// C + G as the sum of J^T (m (J' q' - g), 0) over the links' centers.
-inline JointVector summed_bias(const Linkage& linkage) {
+inline LinkageVector summed_bias(const Linkage& linkage) {
     const LinkageModel& model = linkage.model;
-    JointVector bias;
+    LinkageVector bias;
     bias.setZero(model.freedoms);
     for (int link = 0; link < model.link_count; ++link) {
         const Vec2 center = link_center_pose(model, linkage.data, link).head<2>();

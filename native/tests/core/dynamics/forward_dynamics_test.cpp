@@ -14,24 +14,24 @@ namespace {
 
 /// Error of `acceleration` as a solution of D a = force - C - G, relative to the size of the terms:
 /// independent of D's condition.
-double backward_error(const Linkage& linkage, const JointVector& force, const JointVector& acceleration) {
-    const JointMatrix mass = haptics::testing::summed_mass_matrix(linkage);
-    const JointVector bias = haptics::testing::summed_bias(linkage);
-    const JointVector residual = mass * acceleration + bias - force;
-    const JointVector scale = mass.cwiseAbs() * acceleration.cwiseAbs() + bias.cwiseAbs() + force.cwiseAbs();
+double backward_error(const Linkage& linkage, const LinkageVector& force, const LinkageVector& acceleration) {
+    const LinkageMatrix mass = haptics::testing::summed_mass_matrix(linkage);
+    const LinkageVector bias = haptics::testing::summed_bias(linkage);
+    const LinkageVector residual = mass * acceleration + bias - force;
+    const LinkageVector scale = mass.cwiseAbs() * acceleration.cwiseAbs() + bias.cwiseAbs() + force.cwiseAbs();
     return residual.cwiseAbs().maxCoeff() / scale.maxCoeff();
 }
 
-double relative_error(const JointVector& value, const JointVector& truth) {
+double relative_error(const LinkageVector& value, const LinkageVector& truth) {
     return (value - truth).cwiseAbs().maxCoeff() / truth.cwiseAbs().maxCoeff();
 }
 
 /// Condition of the mass matrix with its rows and columns scaled to a unit diagonal (units cancel).
 double condition(const Linkage& linkage) {
-    JointMatrix mass = haptics::testing::summed_mass_matrix(linkage);
-    const JointVector scale = mass.diagonal().cwiseSqrt().cwiseInverse();
+    LinkageMatrix mass = haptics::testing::summed_mass_matrix(linkage);
+    const LinkageVector scale = mass.diagonal().cwiseSqrt().cwiseInverse();
     mass = (scale.asDiagonal() * mass * scale.asDiagonal()).eval();
-    const Eigen::SelfAdjointEigenSolver<JointMatrix> eigen(mass, Eigen::EigenvaluesOnly);
+    const Eigen::SelfAdjointEigenSolver<LinkageMatrix> eigen(mass, Eigen::EigenvaluesOnly);
     return eigen.eigenvalues().maxCoeff() / eigen.eigenvalues().minCoeff();
 }
 
@@ -48,13 +48,13 @@ TEST_CASE("the composite mass matrix and Newton-Euler bias equal the sums over J
         spec.coriolis = round % 3 != 0;
         Linkage linkage(spec);
         randomize(linkage, random, round);
-        JointMatrix mass;
+        LinkageMatrix mass;
         mass_matrix(linkage.model, linkage.data, mass);
-        const JointMatrix truth = haptics::testing::summed_mass_matrix(linkage);
+        const LinkageMatrix truth = haptics::testing::summed_mass_matrix(linkage);
         worst = std::max(worst, (mass - truth).cwiseAbs().maxCoeff() / truth.cwiseAbs().maxCoeff());
-        JointVector bias;
+        LinkageVector bias;
         bias_forces(linkage.model, linkage.data, bias);
-        const JointVector bias_truth = haptics::testing::summed_bias(linkage);
+        const LinkageVector bias_truth = haptics::testing::summed_bias(linkage);
         worst = std::max(worst, (bias - bias_truth).cwiseAbs().maxCoeff() /
                                     (1e-3 + bias_truth.cwiseAbs().maxCoeff()));
     }
@@ -80,14 +80,14 @@ TEST_CASE("dense, articulated and chosen kernels agree on thousands of random tr
         spec.coriolis = round % 5 != 0;
         Linkage linkage(spec);
         randomize(linkage, random, round);
-        const JointVector force = random_vector(random, linkage.model.freedoms, 2.0);
+        const LinkageVector force = random_vector(random, linkage.model.freedoms, 2.0);
         DenseDynamics dense;
-        JointVector truth;
+        LinkageVector truth;
         dense_acceleration(linkage.model, linkage.data, force, nullptr, dense, truth);
         ArticulatedFactor factor;
-        JointVector articulated;
+        LinkageVector articulated;
         articulated_acceleration(linkage.model, linkage.data, force, nullptr, factor, articulated);
-        JointVector chosen;
+        LinkageVector chosen;
         forward_dynamics(linkage.model, linkage.data, force, factor, chosen);
         worst_backward =
             std::max({worst_backward, backward_error(linkage, force, truth),
@@ -122,11 +122,11 @@ TEST_CASE(
             Linkage linkage(spec);
             REQUIRE(linkage.model.kernel == DynamicsKernel::closed_chain);
             randomize(linkage, random, round);
-            const JointVector force = random_vector(random, links, 1.0);
+            const LinkageVector force = random_vector(random, links, 1.0);
             DenseDynamics dense;
-            JointVector truth;
+            LinkageVector truth;
             dense_acceleration(linkage.model, linkage.data, force, nullptr, dense, truth);
-            JointVector closed;
+            LinkageVector closed;
             closed_chain_acceleration(linkage.model, linkage.data, force, closed);
             worst = std::max(worst, relative_error(closed, truth));
         }
@@ -143,13 +143,13 @@ TEST_CASE("an added diagonal is the same in the dense and the articulated method
         kind.base = random.integer(0, 1) == 0 ? BaseKind::grounded : BaseKind::floating;
         Linkage linkage(random_linkage(random, kind));
         randomize(linkage, random, round);
-        const JointVector force = random_vector(random, linkage.model.freedoms, 2.0);
-        const JointVector added = random_vector(random, linkage.model.freedoms, 1e-2).cwiseAbs();
+        const LinkageVector force = random_vector(random, linkage.model.freedoms, 2.0);
+        const LinkageVector added = random_vector(random, linkage.model.freedoms, 1e-2).cwiseAbs();
         DenseDynamics dense;
-        JointVector truth;
+        LinkageVector truth;
         dense_acceleration(linkage.model, linkage.data, force, &added, dense, truth);
         ArticulatedFactor factor;
-        JointVector fast;
+        LinkageVector fast;
         articulated_acceleration(linkage.model, linkage.data, force, &added, factor, fast);
         worst = std::max(worst, relative_error(fast, truth));
     }
@@ -166,12 +166,12 @@ TEST_CASE("D^-1 applied to vectors and rows, dense D^-1 and J D^-1 J^T equal Eig
         Linkage linkage(random_linkage(random, kind));
         randomize(linkage, random, round);
         const int n = linkage.model.freedoms;
-        JointMatrix mass;
+        LinkageMatrix mass;
         mass_matrix(linkage.model, linkage.data, mass);
         const Eigen::MatrixXd truth = Eigen::MatrixXd(mass).inverse();
         ArticulatedFactor factor;
         factorize(linkage.model, linkage.data, nullptr, factor);
-        JointMatrix inverse;
+        LinkageMatrix inverse;
         inverse_mass_matrix(linkage.model, linkage.data, factor, inverse);
         worst = std::max(worst, (inverse - truth).cwiseAbs().maxCoeff() / truth.cwiseAbs().maxCoeff());
         CHECK(inverse == inverse.transpose());

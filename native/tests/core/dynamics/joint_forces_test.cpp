@@ -28,7 +28,7 @@ Linkage equipped_drawer() {
 double force_at(Linkage& linkage, double q, double v) {
     linkage.data.position[0] = q;
     linkage.data.velocity[0] = v;
-    JointVector force = JointVector::Zero(1);
+    LinkageVector force = LinkageVector::Zero(1);
     add_joint_forces(linkage.model, linkage.data, force);
     return force[0];
 }
@@ -79,12 +79,12 @@ TEST_CASE(
         drawer.data.position[0] = 0.001;
         drawer.data.velocity[0] = -0.5;
         ArticulatedFactor factor;
-        JointVector acceleration;
-        JointVector added;
+        LinkageVector acceleration;
+        LinkageVector added;
         const double dt = 1e-3;
         double fastest = 0.0;
         for (int i = 0; i < 1000; ++i) {
-            JointVector force = JointVector::Zero(1);
+            LinkageVector force = LinkageVector::Zero(1);
             update_kinematics(drawer.model, drawer.data);
             if (implicit) {
                 add_joint_forces_implicit(drawer.model, drawer.data, dt, force, added);

@@ -9,7 +9,7 @@ using haptics::testing::randomize;
 namespace {
 
 /// Pose of the material point of `link` that has the given local coordinates, at position q.
-Vec3 pose_at(Linkage& linkage, const JointVector& position, int link, const Vec2& local) {
+Vec3 pose_at(Linkage& linkage, const LinkageVector& position, int link, const Vec2& local) {
     linkage.data.position = position;
     update_kinematics(linkage.model, linkage.data);
     const Vec2 point = link_point(linkage.model, linkage.data, link, local);
@@ -62,8 +62,8 @@ TEST_CASE("Jacobians, their products and J' q' match finite differences to 1e-8 
         const LinkageModel& model = linkage.model;
         const int link = random.integer(0, model.link_count - 1);
         const Vec2 local(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1));
-        const JointVector q = linkage.data.position;
-        const JointVector v = linkage.data.velocity;
+        const LinkageVector q = linkage.data.position;
+        const LinkageVector v = linkage.data.velocity;
         const Vec2 point = link_point(model, linkage.data, link, local);
         PointJacobian jacobian;
         point_jacobian(model, linkage.data, link, point, jacobian);
@@ -74,19 +74,19 @@ TEST_CASE("Jacobians, their products and J' q' match finite differences to 1e-8 
             std::max(worst_velocity,
                      (apply_jacobian(model, linkage.data, link, point, v) - twist).cwiseAbs().maxCoeff());
         const Wrench wrench(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
-        JointVector force;
+        LinkageVector force;
         force.setZero(model.freedoms);
         add_wrench(model, linkage.data, link, point, wrench, force);
         worst_velocity =
             std::max(worst_velocity, (force - jacobian.transpose() * wrench).cwiseAbs().maxCoeff());
-        JointVector row;
+        LinkageVector row;
         direction_row(model, linkage.data, link, point, wrench, row);
         CHECK(row == force);
 
         for (int i = 0; i < model.freedoms; ++i) {
             const Vec3 column = derivative(
                 [&](double h) {
-                    JointVector moved = q;
+                    LinkageVector moved = q;
                     moved[i] += h;
                     return pose_at(linkage, moved, link, local);
                 },
@@ -96,7 +96,7 @@ TEST_CASE("Jacobians, their products and J' q' match finite differences to 1e-8 
         // J' q' is the rate of J q' along the motion with constant q'
         const Vec3 rate = derivative(
             [&](double h) -> Vec3 {
-                const JointVector moved = q + h * v;
+                const LinkageVector moved = q + h * v;
                 const Vec3 pose = pose_at(linkage, moved, link, local);
                 PointJacobian there;
                 point_jacobian(model, linkage.data, link, pose.head<2>(), there);

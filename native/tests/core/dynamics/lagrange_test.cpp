@@ -16,15 +16,15 @@ TEST_CASE("C + G follows from Lagrange's equations with finite differences of D 
         Linkage linkage(random_linkage(random, kind));
         randomize(linkage, random, round);
         const int n = linkage.model.freedoms;
-        const JointVector q = linkage.data.position;
-        const JointVector v = linkage.data.velocity;
-        JointVector bias;
+        const LinkageVector q = linkage.data.position;
+        const LinkageVector v = linkage.data.velocity;
+        LinkageVector bias;
         bias_forces(linkage.model, linkage.data, bias);
 
         // slopes of D and of the potential along each coordinate, by sixth-order differences
         const double h = 1e-3;
         const double weights[3] = {45.0, -9.0, 1.0};
-        JointVector expected = JointVector::Zero(n);
+        LinkageVector expected = LinkageVector::Zero(n);
         for (int k = 0; k < n; ++k) {
             Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(n, n);
             double potential_slope = 0.0;
@@ -33,7 +33,7 @@ TEST_CASE("C + G follows from Lagrange's equations with finite differences of D 
                     linkage.data.position = q;
                     linkage.data.position[k] += sign * step * h;
                     update_kinematics(linkage.model, linkage.data);
-                    JointMatrix mass;
+                    LinkageMatrix mass;
                     mass_matrix(linkage.model, linkage.data, mass);
                     slope += sign * weights[step - 1] / (60.0 * h) * mass;
                     potential_slope +=
@@ -59,7 +59,7 @@ TEST_CASE("kinetic energy is v.D v / 2 and momentum is that of all links") {
         Linkage linkage(random_linkage(random, kind));
         randomize(linkage, random, round);
         const LinkageModel& model = linkage.model;
-        JointMatrix mass;
+        LinkageMatrix mass;
         mass_matrix(model, linkage.data, mass);
         const double expected = 0.5 * linkage.data.velocity.dot(mass * linkage.data.velocity);
         worst = std::max(worst, std::fabs(kinetic_energy(model, linkage.data) - expected) / expected);

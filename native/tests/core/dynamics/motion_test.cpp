@@ -152,17 +152,17 @@ TEST_CASE("external forces and gravity change the momentum of a free linkage by 
     linkage.data.velocity << 0.0, 0.1, 1.0, -1.0, 2.0, 0.5, 0.3;
     update_kinematics(linkage.model, linkage.data);
     const Momentum before = total_momentum(linkage.model, linkage.data);
-    JointVector force;
+    LinkageVector force;
     force.setZero(linkage.model.freedoms);
     const Wrench wrench(0.7, -0.3, 0.02);
     const Vec2 at = link_point(linkage.model, linkage.data, 4, {0.1, 0.0});
     add_wrench(linkage.model, linkage.data, 4, at, wrench, force);
     // rate of momentum by central differences of a tiny step both ways
-    JointVector acceleration;
+    LinkageVector acceleration;
     ArticulatedFactor factor;
     forward_dynamics(linkage.model, linkage.data, force, factor, acceleration);
-    const JointVector q = linkage.data.position;
-    const JointVector v = linkage.data.velocity;
+    const LinkageVector q = linkage.data.position;
+    const LinkageVector v = linkage.data.velocity;
     const auto momentum_at = [&](double h) {
         linkage.data.position = q + h * v + 0.5 * h * h * acceleration;
         linkage.data.velocity = v + h * acceleration;

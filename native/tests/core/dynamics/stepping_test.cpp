@@ -34,7 +34,7 @@ std::vector<LinkageSpec> every_kernel() {
 }
 
 /// FNV-1a over the bits of the numbers.
-std::uint64_t hash(std::uint64_t seed, const JointVector& numbers) {
+std::uint64_t hash(std::uint64_t seed, const LinkageVector& numbers) {
     for (const double number : numbers) {
         std::uint64_t bits = 0;
         std::memcpy(&bits, &number, sizeof(bits));
@@ -52,15 +52,15 @@ TEST_CASE("no stepping function of the dynamics takes or gives back memory") {
         Linkage linkage(spec);
         const auto dense = std::make_unique<DenseDynamics>();
         const auto factor = std::make_unique<ArticulatedFactor>();
-        const auto inverse = std::make_unique<JointMatrix>();
+        const auto inverse = std::make_unique<LinkageMatrix>();
         const auto eighth = std::make_unique<DormandPrince8>();
         const auto fourth = std::make_unique<AdamsBashforth4>();
         const auto first = std::make_unique<SemiImplicitEuler>();
         const auto motion = std::make_unique<LinkageMotion>(linkage.model, linkage.data);
         const int n = linkage.model.freedoms;
-        JointVector force = JointVector::Constant(n, 0.01);
-        JointVector acceleration;
-        JointVector added = JointVector::Constant(n, 1e-3);
+        LinkageVector force = LinkageVector::Constant(n, 0.01);
+        LinkageVector acceleration;
+        LinkageVector added = LinkageVector::Constant(n, 1e-3);
         PointJacobian jacobian;
         Eigen::MatrixXd solutions(n, 3);
         Mat3 operational;
@@ -97,8 +97,8 @@ TEST_CASE("the semi-implicit step is the same as forward dynamics followed by th
         Linkage apart(spec);
         const auto factor = std::make_unique<ArticulatedFactor>();
         const int n = fused.model.freedoms;
-        const JointVector force = JointVector::Constant(n, 1e-4);
-        JointVector acceleration;
+        const LinkageVector force = LinkageVector::Constant(n, 1e-4);
+        LinkageVector acceleration;
         for (int i = 0; i < 100; ++i) {
             step_semi_implicit(fused.model, fused.data, force, 1e-3, *factor, acceleration);
             prepare_dynamics(apart.model, apart.data);
@@ -115,11 +115,11 @@ TEST_CASE("a thousand steps of every kernel give the same bits in every build an
     for (const LinkageSpec& spec : every_kernel()) {
         Linkage linkage(spec);
         const auto factor = std::make_unique<ArticulatedFactor>();
-        JointVector force(linkage.model.freedoms);
+        LinkageVector force(linkage.model.freedoms);
         for (int i = 0; i < linkage.model.freedoms; ++i) {
             force[i] = 1e-4 * (i % 5 - 2);
         }
-        JointVector acceleration;
+        LinkageVector acceleration;
         for (int i = 0; i < 1000; ++i) {
             step_semi_implicit(linkage.model, linkage.data, force, 1e-3, *factor, acceleration);
         }

@@ -42,10 +42,10 @@ std::vector<FigureError> validate(const SessionSettings& settings);
 /// for the constructor.
 class Session {
   public:
-    /// Sets everything aside (allocates). `start` is the pose of the tool's center of mass. `device` outlives
-    /// the session.
+    /// Sets everything aside (allocates). `start` is the pose of a rigid tool's center of mass, or the
+    /// coordinates of a linkage. `device` outlives the session.
     Session(const SessionSettings& settings, const Model& model, const OutputGate& gate, DevicePort& device,
-            const Pose& start);
+            const LinkageVector& start);
 
     /// Takes a newer neighborhood.
     void take(const Neighborhood& neighborhood) { take_neighborhood(neighborhood, *data_); }

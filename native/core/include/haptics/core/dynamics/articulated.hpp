@@ -27,14 +27,14 @@ struct ArticulatedFactor {
 };
 
 /// Factorizes D, with `added` (may be null) on its diagonal. After update_positions().
-void factorize(const LinkageModel& model, const LinkageData& data, const JointVector* added,
+void factorize(const LinkageModel& model, const LinkageData& data, const LinkageVector* added,
                ArticulatedFactor& factor);
 /// factorize() and acceleration = D^-1 (force - C - G) in one sweep; `factor` can be used by solve()
 /// afterwards.
-void articulated_acceleration(const LinkageModel& model, const LinkageData& data, const JointVector& force,
-                              const JointVector* added, ArticulatedFactor& factor, JointVector& acceleration);
+void articulated_acceleration(const LinkageModel& model, const LinkageData& data, const LinkageVector& force,
+                              const LinkageVector* added, ArticulatedFactor& factor, LinkageVector& acceleration);
 /// solution = D^-1 right_side in O(n). The two may be the same vector. `data` as it was when factorized.
 void solve(const LinkageModel& model, const LinkageData& data, const ArticulatedFactor& factor,
-           const JointVector& right_side, JointVector& solution);
+           const LinkageVector& right_side, LinkageVector& solution);
 
 } // namespace haptics

@@ -8,14 +8,14 @@ namespace haptics {
 
 /// Memory of the dense method.
 struct DenseDynamics {
-    JointMatrix mass;
-    JointVector bias;
-    Eigen::LDLT<JointMatrix> factor;
+    LinkageMatrix mass;
+    LinkageVector bias;
+    Eigen::LDLT<LinkageMatrix> factor;
 };
 
 /// acceleration = D^-1 (force - C - G). `added` (may be null) is added to the diagonal of D. After
 /// update_positions().
-void dense_acceleration(const LinkageModel& model, const LinkageData& data, const JointVector& force,
-                        const JointVector* added, DenseDynamics& dense, JointVector& acceleration);
+void dense_acceleration(const LinkageModel& model, const LinkageData& data, const LinkageVector& force,
+                        const LinkageVector* added, DenseDynamics& dense, LinkageVector& acceleration);
 
 } // namespace haptics

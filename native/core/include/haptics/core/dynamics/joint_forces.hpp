@@ -7,12 +7,12 @@ namespace haptics {
 
 /// force += springs + damping + friction + limits (N m or N).
 /// Friction is -friction * clamp(rate / friction_band, -1, 1): it creeps below the band. A limit never pulls.
-void add_joint_forces(const LinkageModel& model, const LinkageData& data, JointVector& force);
+void add_joint_forces(const LinkageModel& model, const LinkageData& data, LinkageVector& force);
 
 /// The same forces for a linearly implicit step of `dt` (s): with B and K the slopes of the forces in rate
 /// and position, force += f(q, q') - dt K q', and added = dt B + dt^2 K is the diagonal to be added to the
 /// mass matrix. Stable for any stiffness.
 void add_joint_forces_implicit(const LinkageModel& model, const LinkageData& data, double dt,
-                               JointVector& force, JointVector& added);
+                               LinkageVector& force, LinkageVector& added);
 
 } // namespace haptics

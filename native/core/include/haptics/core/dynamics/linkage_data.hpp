@@ -9,8 +9,8 @@ namespace haptics {
 struct LinkageData {
     /// Coordinates (rad or m; a floating base has x, y in m and theta in rad of its center of mass) and their
     /// rates.
-    JointVector position;
-    JointVector velocity;
+    LinkageVector position;
+    LinkageVector velocity;
 
     /// Angle (rad), rate (rad/s), cosine and sine of each body, by update_rotations().
     BodyNumbers angle{}, rate{}, cosine{}, sine{};

@@ -19,9 +19,9 @@ inline constexpr int k_body_slots = 68;
 using BodyNumbers = Slots<double, k_body_slots>;
 
 /// Vector with one number for each freedom; inline storage, never allocates.
-using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, k_max_freedoms, 1>;
+using LinkageVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, k_max_freedoms, 1>;
 /// Square matrix over the freedoms; inline storage, never allocates.
-using JointMatrix =
+using LinkageMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, k_max_freedoms, k_max_freedoms>;
 
 /// How a body is attached.

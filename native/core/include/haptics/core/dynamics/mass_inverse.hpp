@@ -10,7 +10,7 @@ namespace haptics {
 template <class Rows, class Solutions>
 void solve_rows(const LinkageModel& model, const LinkageData& data, const ArticulatedFactor& factor,
                 const Eigen::MatrixBase<Rows>& rows, Eigen::MatrixBase<Solutions>& solutions) {
-    JointVector column(model.freedoms);
+    LinkageVector column(model.freedoms);
     for (Eigen::Index i = 0; i < rows.rows(); ++i) {
         column = rows.row(i).transpose();
         solve(model, data, factor, column, column);
@@ -36,6 +36,6 @@ void operational_inverse(const Eigen::MatrixBase<Rows>& rows, const Eigen::Matri
 
 /// D^-1 itself, symmetric to the last bit: O(n^2).
 void inverse_mass_matrix(const LinkageModel& model, const LinkageData& data, const ArticulatedFactor& factor,
-                         JointMatrix& inverse);
+                         LinkageMatrix& inverse);
 
 } // namespace haptics

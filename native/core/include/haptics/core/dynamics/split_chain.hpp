@@ -7,8 +7,8 @@
 namespace haptics {
 
 /// acceleration = D^-1 (force - C - G); for models with is_chain and at least k_split_chain_minimum bodies.
-void split_chain_acceleration(const LinkageModel& model, const LinkageData& data, const JointVector& force,
-                              JointVector& acceleration);
+void split_chain_acceleration(const LinkageModel& model, const LinkageData& data, const LinkageVector& force,
+                              LinkageVector& acceleration);
 
 /// Lays the chain out in lanes; called by build_model().
 void describe_split_chain(LinkageModel& model);

@@ -2,7 +2,9 @@
 /// State of the local model and the memory it works on. Large: set it aside once, before the loop starts.
 
 #include <haptics/core/contact/contact.hpp>
+#include <haptics/core/dynamics/articulated.hpp>
 #include <haptics/core/local_model/contact_system.hpp>
+#include <haptics/core/local_model/model.hpp>
 #include <haptics/core/local_model/movable.hpp>
 #include <haptics/core/local_model/neighborhood.hpp>
 
@@ -20,15 +22,30 @@ struct Track {
     Pose offset{0.0, 0.0, 0.0};
 };
 
+/// What a joint of the tool remembers from step to step.
+struct JointMemory {
+    /// Displacement of the friction spring from its anchor, rad or m.
+    double slip_spring{0.0};
+    bool sliding{false};
+    /// The joint rested against a limit.
+    bool at_limit{false};
+};
+
 struct Data {
     /// Steps done.
     std::uint64_t step{0};
     /// Loop-clock time of the state, s.
     double time{0.0};
-    /// Proxy: pose and velocity of the tool's center of mass.
+    /// Proxy: pose and velocity of the center of mass of a rigid tool, or of the held link.
     Pose pose{0.0, 0.0, 0.0};
     Twist velocity{0.0, 0.0, 0.0};
-    /// The tool's shape at the present pose and the neighbors at their extrapolated poses.
+    /// Proxy in configuration space, and what follows from it, when the tool is a linkage.
+    LinkageData linkage;
+    ArticulatedFactor factor;
+    Slots<JointMemory, k_max_freedoms> joint;
+    /// Where the tool is held.
+    Grip grip;
+    /// The tool's shapes at the present poses and the neighbors at their extrapolated poses.
     BodySet tool;
     BodySet neighbors;
     /// The snapshot that the neighbors come from.

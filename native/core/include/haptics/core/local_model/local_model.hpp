@@ -56,11 +56,13 @@ struct StepOutput {
     Wrench coupling{0.0, 0.0, 0.0};
     /// The same at full share: the device is commanded its opposite, and the gate takes its own part.
     Wrench full_coupling{0.0, 0.0, 0.0};
-    /// Sum of contact forces and gravity on the tool about the grip, mean of the step.
+    /// Sum of contact forces and gravity on a rigid tool about the grip, mean of the step; contact forces
+    /// alone for a linkage (what the hand has to hold of them depends on its joints: grip_acceleration).
     Wrench environment{0.0, 0.0, 0.0};
-    /// Contact forces alone, about the grip.
+    /// Contact forces on all links, about the grip.
     Wrench contact{0.0, 0.0, 0.0};
-    /// Acceleration J_h D^-1 tau that the environment alone gives to the grip.
+    /// Acceleration J_h D^-1 (tau - C) + J_h' q' of the grip without the hand: from contacts, gravity, limits,
+    /// springs, damping and friction of joints, and the motion itself.
     Vec3 grip_acceleration{0.0, 0.0, 0.0};
     /// J_h D^-1 J_h^T at the grip (rows of freedoms that are not held are zero).
     Mat3 grip_mobility{Mat3::Zero()};
@@ -91,8 +93,12 @@ struct StepOutput {
     bool fell_back{false};
 };
 
-/// Puts the proxy somewhere at rest and forgets all contacts.
-void reset(const Model& model, Data& data, const Pose& pose);
+/// Puts the proxy somewhere at rest and forgets all contacts. `configuration`: the pose of a rigid tool's
+/// center of mass, or the coordinates of a linkage (as many as it has freedoms).
+void reset(const Model& model, Data& data, const LinkageVector& configuration);
+
+/// The hand takes the tool at another place: a link and a point of it. Motion and contacts go on.
+void grab(const Model& model, Data& data, const Grip& grip);
 
 /// Takes a newer snapshot: contact memory and movable bodies survive. Does nothing when the sequence is not
 /// newer.
@@ -105,14 +111,14 @@ void pass_time(Data& data, double seconds);
 void step(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output);
 
 /// J_h D^-1 J_h^T at the grip for the present pose.
-Mat3 grip_mobility(const Model& model, const Data& data);
+Mat3 grip_mobility(const Model& model, Data& data);
 
-/// Contact forces of a proxy that is put at `pose` with `velocity` and has no motion of its own: direct
+/// Contact forces of a rigid tool that is put at `pose` with `velocity` and has no motion of its own: direct
 /// rendering, the baseline.
 void step_direct(const Model& model, Data& data, const Pose& pose, const Twist& velocity, double dt,
                  StepOutput& output);
 
-/// Pose of the grip for a pose of the center of mass.
+/// Pose of the grip for a pose of the center of mass of the held link.
 Pose grip_pose(const Grip& grip, const Pose& pose);
 /// Pose of the center of mass for a pose of the grip.
 Pose center_pose(const Grip& grip, const Pose& at_grip);

@@ -4,6 +4,7 @@
 
 #include <haptics/core/contact/body.hpp>
 #include <haptics/core/contact/collision.hpp>
+#include <haptics/core/dynamics/linkage_model.hpp>
 
 #include <cstdint>
 
@@ -27,7 +28,9 @@ enum class ContactMode : std::uint8_t {
 
 /// Where and how the hand holds the tool.
 struct Grip {
-    /// Held point in the axes of the tool's body (from its center of mass), m.
+    /// Held link; 0 for a rigid tool.
+    std::int32_t link{0};
+    /// Held point in the axes of that link (from its center of mass), m.
     Vec2 point{0.0, 0.0};
     /// True: position and angle are held (3 rows). False: the point alone (2 rows), the tool turns freely
     /// about it.
@@ -46,15 +49,24 @@ struct LocalModelSettings {
     int max_events{4};
 };
 
-/// The rigid tool in the axes of its center of mass.
+/// What the user holds: a rigid body in the axes of its center of mass, or a whole linkage.
 struct ToolModel {
+    /// The tool is `linkage`, held by one of its links; mass and inertia below are then not used.
+    bool articulated{false};
     /// kg, > 0.
     double mass{0.1};
     /// Moment of inertia about the center of mass, kg m^2, > 0.
     double inertia{1e-5};
+    /// Grip at the start; Data has the present one.
     Grip grip;
-    /// Shape and surface: body[0] with kind `tool`.
+    /// Shapes and surfaces: body[i] with kind `tool` is link i, in the axes of the link turned as its frame,
+    /// with the link's center of mass as the origin. A link without shape touches nothing.
     BodySet shape;
+    /// Links, joints, masses (gravity comes with the neighborhood, not from here).
+    LinkageModel linkage;
+
+    /// Freedoms of the tool.
+    [[nodiscard]] int freedoms() const { return articulated ? linkage.freedoms : 3; }
 };
 
 struct Model {

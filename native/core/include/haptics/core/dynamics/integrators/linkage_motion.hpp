@@ -32,13 +32,13 @@ class LinkageMotion {
     }
 
     /// Generalized force that does not change, N m or N.
-    JointVector constant_force;
+    LinkageVector constant_force;
 
   private:
     const LinkageModel& model_;
     LinkageData& data_;
     mutable ArticulatedFactor factor_;
-    mutable JointVector force_, acceleration_;
+    mutable LinkageVector force_, acceleration_;
 };
 
 } // namespace haptics

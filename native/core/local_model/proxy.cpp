@@ -1,0 +1,236 @@
+// The tool in configuration space.
+//
+// A rigid tool's coordinates are the pose of its center of mass: D = diag(m, m, I), J of a point at r from
+// the center is [1 0 -r_y; 0 1 r_x; 0 0 1], no Coriolis terms. A linkage's coordinates are those of its
+// joints (and of a floating base); D, C, J come from core/dynamics. All else in the local model sees rows,
+// a mass matrix and a generalized force, and does not ask which of the two it is.
+//
+// D and J of a step are those of its start. So a linkage's coordinates wait in `displacement` until the step ends,
+// and all that follows from them stays as it was when D was factorized.
+
+#include <haptics/core/dynamics/energy.hpp>
+#include <haptics/core/dynamics/jacobian.hpp>
+#include <haptics/core/dynamics/kinematics.hpp>
+#include <haptics/core/dynamics/mass_inverse.hpp>
+#include <haptics/core/dynamics/mass_matrix.hpp>
+
+#include "internal.hpp"
+#include "row_solver.hpp"
+
+namespace haptics {
+
+void grab(const Model& model, Data& data, const Grip& grip) {
+    data.grip = grip;
+    local::place_tool(model, data);
+}
+
+namespace local {
+namespace {
+
+std::size_t index(int i) {
+    return static_cast<std::size_t>(i);
+}
+
+} // namespace
+
+void place_tool(const Model& model, Data& data) {
+    const ToolModel& tool = model.tool;
+    if (!tool.articulated) {
+        data.tool.body[0].pose = data.pose;
+        data.tool.body[0].velocity = data.velocity;
+        return;
+    }
+    update_kinematics(tool.linkage, data.linkage);
+    const auto center_velocity = [&](int link, const Pose& center) {
+        return point_velocity(tool.linkage, data.linkage, link, center.head<2>());
+    };
+    for (int i = 0; i < data.tool.body_count; ++i) {
+        Body& b = data.tool.body[index(i)];
+        b.pose = link_center_pose(tool.linkage, data.linkage, i);
+        b.velocity = center_velocity(i, b.pose);
+    }
+    data.pose = link_center_pose(tool.linkage, data.linkage, data.grip.link);
+    data.velocity = center_velocity(data.grip.link, data.pose);
+}
+
+void load_tool(const Model& model, Data& data) {
+    ContactSystem& s = data.system;
+    if (model.tool.articulated)
+        s.velocity.head(s.tool_freedoms) = data.linkage.velocity;
+    else
+        s.velocity.head<3>() = data.velocity;
+}
+
+void store_tool(const Model& model, Data& data) {
+    const ContactSystem& s = data.system;
+    if (model.tool.articulated)
+        data.linkage.velocity = s.velocity.head(s.tool_freedoms);
+    else
+        data.velocity = s.velocity.head<3>();
+}
+
+void move_tool(const Model& model, Data& data, double dt) {
+    if (!model.tool.articulated) {
+        data.pose += dt * data.velocity;
+        place_tool(model, data);
+        return;
+    }
+    data.system.displacement += dt * data.linkage.velocity;
+    const LinkageModel& linkage = model.tool.linkage;
+    const Vec2 center = link_center_pose(linkage, data.linkage, data.grip.link).head<2>();
+    data.pose += dt * apply_jacobian(linkage, data.linkage, data.grip.link, center, data.linkage.velocity);
+}
+
+void end_tool_step(const Model& model, Data& data) {
+    if (!model.tool.articulated)
+        return;
+    data.linkage.position += data.system.displacement;
+    data.system.displacement.setZero();
+    place_tool(model, data);
+}
+
+void write_tool_mass(const Model& model, Data& data) {
+    ContactSystem& s = data.system;
+    const ToolModel& tool = model.tool;
+    s.has_joint_springs = false;
+    if (!tool.articulated) {
+        const Vec3 mass(tool.mass, tool.mass, tool.inertia);
+        s.mass.topLeftCorner<3, 3>().diagonal() = mass;
+        s.inverse_mass.topLeftCorner<3, 3>().diagonal() = mass.cwiseInverse();
+        s.tool_weight = Vec3(tool.mass * data.gravity.x(), tool.mass * data.gravity.y(), 0.0);
+        s.external.head<3>() = s.tool_weight;
+        s.has_mass = true;
+        s.has_inverse = true;
+        return;
+    }
+    const int n = s.tool_freedoms;
+    s.displacement.setZero(n);
+    s.has_mass = false;
+    s.has_inverse = false;
+    factorize(tool.linkage, data.linkage, nullptr, data.factor);
+    if (!is_long(model)) {
+        need_mass(model, data);
+        need_inverse(model, data);
+    }
+    write_tool_force(model, data);
+    for (int i = tool.linkage.floating ? 3 : 0; tool.linkage.has_passive && i < n; ++i) {
+        const JointSpec& joint = tool.linkage.passive[i];
+        s.has_joint_springs = s.has_joint_springs || joint.spring_stiffness > 0.0 || joint.damping > 0.0;
+    }
+}
+
+void write_tool_force(const Model& model, Data& data) {
+    if (!model.tool.articulated)
+        return;
+    ContactSystem& s = data.system;
+    update_kinematics(model.tool.linkage, data.linkage);
+    bias_forces(model.tool.linkage, data.linkage, Vec2::Zero(), s.bias);
+    s.external.head(s.tool_freedoms) = -s.bias;
+    s.tool_weight.setZero(s.tool_freedoms);
+    if (data.gravity.isZero(0.0))
+        return;
+    s.tool_weight = s.bias;
+    bias_forces(model.tool.linkage, data.linkage, data.gravity, s.bias);
+    s.tool_weight -= s.bias;
+    s.external.head(s.tool_freedoms) = -s.bias;
+}
+
+Vec3 joint_spring(const Model& model, const Data& data, int freedom) {
+    const JointSpec& joint = model.tool.linkage.passive[freedom];
+    const double moved = data.system.displacement[freedom];
+    return {data.linkage.position[freedom] + moved - joint.spring_rest, joint.spring_stiffness, joint.damping};
+}
+
+void need_mass(const Model& model, Data& data) {
+    ContactSystem& s = data.system;
+    if (s.has_mass)
+        return;
+    s.has_mass = true;
+    mass_matrix(model.tool.linkage, data.linkage, s.tool_mass);
+    s.mass.topLeftCorner(s.tool_freedoms, s.tool_freedoms) = s.tool_mass;
+}
+
+void need_inverse(const Model& model, Data& data) {
+    ContactSystem& s = data.system;
+    if (s.has_inverse)
+        return;
+    s.has_inverse = true;
+    inverse_mass_matrix(model.tool.linkage, data.linkage, data.factor, s.tool_inverse);
+    s.inverse_mass.topLeftCorner(s.tool_freedoms, s.tool_freedoms) = s.tool_inverse;
+}
+
+Mat3 mobility(const Model& model, Data& data) {
+    ContactSystem& s = data.system;
+    Mat3 result;
+    for (int i = 0; i < 3; ++i) {
+        s.tool_force = s.grip.row(i).transpose();
+        result.col(i) = tool_response(model, data, s.tool_force);
+    }
+    return 0.5 * (result + result.transpose());
+}
+
+Vec3 tool_response(const Model& model, Data& data, const LinkageVector& force) {
+    ContactSystem& s = data.system;
+    if (!model.tool.articulated) {
+        const Vec3 inverse(1.0 / model.tool.mass, 1.0 / model.tool.mass, 1.0 / model.tool.inertia);
+        return s.grip.lazyProduct(inverse.cwiseProduct(force));
+    }
+    solve(model.tool.linkage, data.linkage, data.factor, force, s.bias);
+    return s.grip * s.bias;
+}
+
+double tool_energy(const Model& model, const Data& data) {
+    const ToolModel& tool = model.tool;
+    if (!tool.articulated)
+        return 0.5 * tool.mass * data.velocity.head<2>().squaredNorm() +
+               0.5 * tool.inertia * data.velocity.z() * data.velocity.z();
+    double energy = kinetic_energy(tool.linkage, data.linkage);
+    for (int i = 0; data.system.has_joint_springs && i < tool.linkage.freedoms; ++i) {
+        const Vec3 spring = joint_spring(model, data, i);
+        energy += 0.5 * spring.y() * spring.x() * spring.x();
+    }
+    return energy;
+}
+
+void add_tool_row(const Model& model, const Data& data, int link, const Vec2& point, const Vec2& direction,
+                  double sign, double* row) {
+    if (!model.tool.articulated) {
+        const Vec2 arm = point - data.pose.head<2>();
+        row[0] += sign * direction.x();
+        row[1] += sign * direction.y();
+        row[2] += sign * cross(arm, direction);
+        return;
+    }
+    const Wrench along(sign * direction.x(), sign * direction.y(), 0.0);
+    visit_jacobian(model.tool.linkage, data.linkage, link, point,
+                   [&](int freedom, const Vec3& column) { row[freedom] += column.dot(along); });
+}
+
+void grip_rows(const Model& model, const Data& data, GripRows& rows) {
+    if (model.tool.articulated) {
+        const Vec2 point = grip_pose(data.grip, data.pose).head<2>();
+        point_jacobian(model.tool.linkage, data.linkage, data.grip.link, point, rows);
+    } else {
+        const Vec2 r = rotate(data.pose.z(), data.grip.point);
+        rows.setIdentity(3, 3);
+        rows(0, 2) = -r.y();
+        rows(1, 2) = r.x();
+    }
+    if (!data.grip.pose)
+        rows.row(2).setZero();
+}
+
+Vec3 grip_bias(const Model& model, const Data& data) {
+    if (!model.tool.articulated) {
+        const Vec2 r = rotate(data.pose.z(), data.grip.point);
+        const double square = data.velocity.z() * data.velocity.z();
+        return {-square * r.x(), -square * r.y(), 0.0};
+    }
+    if (!model.tool.linkage.coriolis)
+        return Vec3::Zero();
+    const Vec2 point = grip_pose(data.grip, data.pose).head<2>();
+    return point_bias(model.tool.linkage, data.linkage, data.grip.link, point);
+}
+
+} // namespace local
+} // namespace haptics
