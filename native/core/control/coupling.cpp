@@ -11,6 +11,11 @@
 // that of the spring: K = m (0.29 / tau)^2 / (1 + a), and B likewise. For 0.3 kg on both sides at 500 Hz and
 // n = 2 this is 673 N/m and 16.2 N s/m.
 //
+// Truncated inverse. With M_d = L L^T the mobility P becomes A = L^T P L, whose eigenvalues are the ratios of
+// the device's mass to the proxy's, whatever the units of the three freedoms; P^-1 = L A^-1 L^T. An
+// eigenvalue below k_heavy has no inverse, one above 2 k_heavy has its own, and 3 u^2 - 2 u^3 leads from one
+// to the other, so the result is continuous in the pose and at most 1 / k_heavy times M_d.
+//
 // S form. Device M_d a = F_h + L and proxy D q'' = tau - J_h^T L share the grip, J_h q'' = a, so L = S (J_h
 // D^-1 tau - M_d^-1 F_h) with S = (J_h D^-1 J_h^T + M_d^-1)^-1. The device is fed forward S J_h D^-1 tau, the
 // proxy S J_h D^-1 J_h^T F_h (note 1 - S M_d^-1 = S J_h D^-1 J_h^T). At rest the sum of both equations says
@@ -48,6 +53,20 @@ Mat3 combined_mass(const Mat3& grip_mobility, const Mat3& device_mass) {
     // S = M (1 + Lambda^-1 M)^-1: no inverse of a singular matrix is taken
     const Mat3 one_plus = Mat3::Identity() + grip_mobility * device_mass;
     return device_mass * one_plus.inverse();
+}
+
+Mat3 truncated_mass(const Mat3& grip_mobility, const Mat3& device_mass) {
+    constexpr double k_heavy = 0.02;
+    const Mat3 root = device_mass.llt().matrixL();
+    const Eigen::SelfAdjointEigenSolver<Mat3> ratios(root.transpose() * grip_mobility * root);
+    Vec3 inverse;
+    for (int i = 0; i < 3; ++i) {
+        const double a = ratios.eigenvalues()(i);
+        const double u = std::clamp((a - k_heavy) / k_heavy, 0.0, 1.0);
+        inverse(i) = u > 0.0 ? u * u * (3.0 - 2.0 * u) / a : 0.0;
+    }
+    const Mat3 axes = root * ratios.eigenvectors();
+    return axes * inverse.asDiagonal() * axes.transpose();
 }
 
 } // namespace haptics

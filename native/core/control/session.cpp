@@ -3,7 +3,8 @@
 // The gate comes after the model, so what it takes away is known one step late: `share_`, the part of the
 // last command that was let through, scales coupling and hand force in the next step, so that device and
 // proxy always receive opposite forces. The command itself is computed at full share; otherwise the gate's
-// cut would be applied twice.
+// cut would be applied twice. Ramp, pause and disarming are no such cut: they take the force off the hand,
+// and the proxy goes on being held, or it would fall away under its weight and never be armed.
 //
 // Impulses. If device and proxy were one body, a collision that changes the grip's velocity by dv would need
 // M_d dv on the device's side (with the S form: L = S J_h D^-1 P = M_d dv for the combined impulse P). Eq.
@@ -18,11 +19,14 @@
 namespace haptics {
 namespace {
 
-double pass_fraction(const Wrench& command, const Wrench& applied, double last) {
+// part of the command that clamps and limits let through, leaving out ramp and pause
+double pass_fraction(const Wrench& command, const GateOutput& gate, double last) {
+    if (gate.fade <= 0.0)
+        return 1.0;
     const double size = command.squaredNorm();
     if (size < 1e-18)
         return last;
-    return std::clamp(applied.dot(command) / size, 0.0, 1.0);
+    return std::clamp(gate.applied.dot(command) / (gate.fade * size), 0.0, 1.0);
 }
 
 double spring_energy(const Vec3& stiffness, const Wrench& force) {
@@ -56,6 +60,16 @@ std::vector<FigureError> validate(const SessionSettings& s) {
     return check.take();
 }
 
+std::vector<FigureError> validate(const SessionSettings& s, const Model& model) {
+    FigureCheck check;
+    check.append(validate(s));
+    if (model.tool.articulated && s.coupling == Coupling::direct)
+        check.inconsistent(
+            "coupling", 2.0, 0.0, 1.0, "(0 four_channel, 1 virtual_coupling, 2 direct)",
+            "Direct rendering needs a rigid tool: a linkage's joints do not follow from the handle.");
+    return check.take();
+}
+
 Session::Session(const SessionSettings& settings, const Model& model, const OutputGate& gate,
                  DevicePort& device, const LinkageVector& start)
     : settings_(settings)
@@ -82,15 +96,33 @@ Session::Session(const SessionSettings& settings, const Model& model, const Outp
 
 void Session::hold(bool held) {
     if (held && grasp_ == 0.0)
-        grab_offset_ = grip_pose(data_->grip, data_->pose) - handle_;
+        freeze_offset();
     held_ = held;
+    regrab_ = false;
     impulses_.drop();
+}
+
+void Session::freeze_offset() {
+    grab_offset_ = grip_pose(data_->grip, data_->pose) - handle_;
+}
+
+void Session::grab(const Grip& grip) {
+    if (grip.link < 0 || grip.link >= data_->tool.body_count || !grip.point.allFinite())
+        return;
+    hold(false);
+    next_grip_ = grip;
+    regrab_ = true;
 }
 
 void Session::grasp() {
     const double change = settings_.step / k_grasp_time;
     grasping_ = std::clamp(grasping_ + (held_ ? change : -change), 0.0, 1.0);
     grasp_ = grasping_ * grasping_ * (3.0 - 2.0 * grasping_); // no kink at either end
+    if (regrab_ && grasp_ == 0.0) {
+        haptics::grab(*model_, *data_, next_grip_);
+        mobility_ = grip_mobility(*model_, *data_);
+        hold(true);
+    }
 }
 
 void Session::arm() {
@@ -113,8 +145,11 @@ bool Session::feeds_forward() const {
     return settings_.coupling == Coupling::four_channel && reading_.has_hand_force;
 }
 
+// a linkage can be light in some pose and stretched in another: its gains are those of the lightest proxy
 Mat3 Session::loop_mobility() const {
-    return feeds_forward() ? mobility_ : Mat3(Mat3::Zero());
+    if (!feeds_forward())
+        return Mat3::Zero();
+    return model_->tool.articulated ? Mat3(1e12 * Mat3::Identity()) : mobility_;
 }
 
 double Session::stored_energy() const {
@@ -137,7 +172,7 @@ void Session::read_device() {
 
 void Session::run_model() {
     const double h = settings_.step;
-    if (settings_.coupling == Coupling::direct) {
+    if (settings_.coupling == Coupling::direct && !model_->tool.articulated) {
         const Pose center = center_pose(data_->grip, handle_ + grab_offset_);
         Twist velocity = handle_velocity_;
         const Vec2 arm = center.head<2>() - (handle_ + grab_offset_).head<2>();
@@ -154,9 +189,12 @@ void Session::run_model() {
     hand.max_force = gate_.limits().max_force * settings_.mapping.scale;
     hand.max_torque = gate_.limits().max_torque;
     hand.share = share_ * grasp_;
-    combined_ = combined_mass(mobility_, device_mass_);
+    felt_mass_ = settings_.hand_force == HandForce::paper ? truncated_mass(mobility_, device_mass_)
+                                                          : combined_mass(mobility_, device_mass_);
     if (feeds_forward())
-        hand.force = hand.share * (combined_ * mobility_ * hand_force_);
+        hand.force = hand.share * (settings_.hand_force == HandForce::paper
+                                       ? hand_force_
+                                       : Wrench(felt_mass_ * mobility_ * hand_force_));
     haptics::step(*model_, *data_, hand, h, output_);
     mobility_ = output_.grip_mobility;
 }
@@ -170,10 +208,13 @@ Wrench Session::command() {
         return grasp_ * output_.environment;
     Wrench force = -output_.full_coupling;
     if (feeds_forward())
-        force += combined_ * output_.grip_acceleration;
+        force += felt_mass_ * (settings_.hand_force == HandForce::paper
+                                   ? output_.grip_acceleration
+                                   : Vec3(output_.grip_acceleration + output_.grip_bias));
     force *= grasp_;
     if (held_ && !output_.grip_velocity_jump.isZero(0.0))
-        impulses_.demand(device_mass_ * output_.grip_velocity_jump);
+        impulses_.demand((settings_.hand_force == HandForce::paper ? felt_mass_ : device_mass_) *
+                         output_.grip_velocity_jump);
     if (output_.contacts == 0 && output_.colliding == 0 && output_.grip_velocity_jump.isZero(0.0))
         impulses_.drop();
     const SafetyLimits& limits = gate_.limits();
@@ -191,19 +232,16 @@ void Session::step() {
     device_mass_ = settings_.mapping.mass_to_scene(device_.handle_mass(reading_.pose));
     grasp();
     run_model();
-    const Wrench wanted = settings_.mapping.wrench_to_device(command());
+    const Wrench force = command();
+    const Wrench wanted = gate_.armed() ? settings_.mapping.wrench_to_device(force) : Wrench(Wrench::Zero());
     const Twist device_twist = settings_.mapping.twist_to_device(handle_velocity_);
     if (arm_wanted_ && !gate_.armed() && gate_.faults() == Fault::none) {
         arm_result_ = gate_.arm(output_.contacts > 0);
-        if (arm_result_ == ArmResult::armed) {
-            grasp_ = 0.0;
-            grasping_ = 0.0;
-            hold(held_); // the coupling starts without tension
+        if (arm_result_ == ArmResult::armed)
             ledger_.reset(reading_.pose, stored_energy());
-        }
     }
     const GateOutput gated = gate_.apply(wanted, reading_.pose, device_twist, settings_.step);
-    share_ = gate_.armed() ? pass_fraction(wanted, gated.applied, share_) : 0.0;
+    share_ = pass_fraction(wanted, gated, share_);
     device_.write(gated.applied);
     ledger_.set_force(gated.applied);
     device_.advance(settings_.step);

@@ -163,7 +163,8 @@ void inverse_dynamics(const LinkageModel& model, const LinkageData& data, const 
     newton_euler(model, data, model.gravity, acceleration, force);
 }
 
-void bias_forces(const LinkageModel& model, const LinkageData& data, const Vec2& gravity, LinkageVector& bias) {
+void bias_forces(const LinkageModel& model, const LinkageData& data, const Vec2& gravity,
+                 LinkageVector& bias) {
     LinkageVector none;
     none.setZero(model.freedoms);
     newton_euler(model, data, gravity, none, bias);

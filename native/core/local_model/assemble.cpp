@@ -6,11 +6,11 @@
 // body [n_x, n_y, r x n] (minus for b); a side that is not gives the number `drive`, so that gap rate =
 // row v - drive.
 //
-// Joints of a linkage join in as rows of their own. A limit is a normal row +-e_i with the spring and damper of
-// the JointSpec, or those of the paper's wall at a lever of 0.1 m when it has none; it takes part in collisions
-// without restitution. Friction is a tangent row e_i with the joint's Coulomb friction as a constant bound. Its
-// spring is as stiff as every integrator bears: with m = 1 / (D^-1)_ii the semi-implicit one needs
-// m > (k h^2 + 2 b h) / 4, and k h^2 = b h / 2 = m / 10 stay far below it also where joints couple.
+// Joints of a linkage join in as rows of their own. A limit is a normal row +-e_i with the spring and damper
+// of the JointSpec, or those of the paper's wall at a lever of 0.1 m when it has none; it takes part in
+// collisions without restitution. Friction is a tangent row e_i with the joint's Coulomb friction as a
+// constant bound. Its spring is as stiff as every integrator bears: with m = 1 / (D^-1)_ii the semi-implicit
+// one needs m > (k h^2 + 2 b h) / 4, and k h^2 = b h / 2 = m / 10 stay far below it also where joints couple.
 //
 // Only movables that a chain of contacts joins to the tool are in the system: the others touch nothing that
 // the hand can feel, and the environment moves them.

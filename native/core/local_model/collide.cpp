@@ -81,6 +81,8 @@ bool collide(const Model& model, Data& data, StepOutput& output) {
 
     const int n = s.tool_freedoms;
     s.velocity = data.solution.velocity;
+    if (model.tool.articulated)
+        s.jump += s.velocity.head(n) - problem.velocity.head(n);
     output.grip_velocity_jump += s.grip * (s.velocity.head(n) - problem.velocity.head(n));
     const Vec2 grip = grip_pose(data.grip, data.pose).head<2>();
     for (int c = 0; c < count; ++c) {

@@ -42,8 +42,7 @@ inline double slip_sign(FrictionMode mode) {
 inline FrictionMode next_mode(const PatchRow& t, double trial, double normal) {
     if (normal <= 0.0 && t.bound <= 0.0)
         return FrictionMode::off;
-    const double bound =
-        slips(t.mode) ? t.dynamic_friction * normal + t.bound : friction_bound(t, normal);
+    const double bound = slips(t.mode) ? t.dynamic_friction * normal + t.bound : friction_bound(t, normal);
     if (std::abs(trial) <= bound)
         return FrictionMode::stick;
     return trial > 0.0 ? FrictionMode::slip_forward : FrictionMode::slip_backward;

@@ -15,7 +15,8 @@
 // With the set of pressing points and the stick or slip of each patch known, everything is linear in the end
 // velocity v+:
 //     (D + h (h k_j + b_j) + h J_h' (h K_c + B_c) J_h + h sum k J'J) v+
-//         = D v + h (tau - k_j (q - q_0) + J_h'(K_c (x_t - x_g) + B_c v_t) + sum J'(k w - K g)),  k = h K + B.
+//         = D v + h (tau - k_j (q - q_0) + J_h'(K_c (x_t - x_g) + B_c v_t) + sum J'(k w - K g)),  k = h K +
+//         B.
 // The set is found by Newton's method on this piecewise linear equation (without friction the residual is the
 // gradient of a convex function, so the true set is its only fixed point). If the set still changes after
 // k_max_iterations, projected Gauss-Seidel with a fixed number of sweeps over the same equations gives the
@@ -164,8 +165,9 @@ void book(const Model& model, Data& data, const Wrench& hand_force, double share
             torque += t.force * cross(middle - grip, perpendicular(patch->normal));
         }
         contact += Wrench(force.x(), force.y(), torque);
-        const bool moves = t.movable >= 0 || t.drive != 0.0 ||
-                           (t.point_count > 0 && s.point[static_cast<std::size_t>(t.first_point)].drive != 0.0);
+        const bool moves =
+            t.movable >= 0 || t.drive != 0.0 ||
+            (t.point_count > 0 && s.point[static_cast<std::size_t>(t.first_point)].drive != 0.0);
         if (moves)
             book_other_side(data, i, dt, output);
     }
@@ -175,7 +177,9 @@ void book(const Model& model, Data& data, const Wrench& hand_force, double share
             const double rate = s.velocity(i);
             s.tool_force(i) -= spring.y() * (spring.x() + dt * rate) + spring.z() * rate;
         }
-    output.source_work += dt * (s.tool_weight.dot(s.velocity.head(n)) + hand_force.dot(s.grip * s.velocity.head(n)));
+    s.force_work += dt * (s.tool_force - s.external.head(n) + s.tool_weight).dot(s.velocity.head(n));
+    output.source_work +=
+        dt * (s.tool_weight.dot(s.velocity.head(n)) + hand_force.dot(s.grip * s.velocity.head(n)));
     output.contact += share * contact;
     output.environment += share * contact;
     if (!model.tool.articulated) {
@@ -183,7 +187,8 @@ void book(const Model& model, Data& data, const Wrench& hand_force, double share
         const Vec2 arm = data.pose.head<2>() - grip;
         output.environment += share * Wrench(weight.x(), weight.y(), cross(arm, weight));
     }
-    output.grip_acceleration += share * (tool_response(model, data, s.tool_force) + grip_bias(model, data));
+    output.grip_acceleration += share * tool_response(model, data, s.tool_force);
+    output.grip_bias += share * grip_bias(model, data);
 }
 
 // part of the coupling that takes effect: the gate's share, less what the device cannot answer
@@ -223,6 +228,8 @@ void integrate(const Model& model, Data& data, const HandInput& hand, double dt,
             settled = solve_step(model, data, used, dt, left) && settled;
         }
         add_coupling(data, hand, used, dt, left, share, output);
+        const Wrench applied = coupling_force(data, used, dt, left) + used.force;
+        s.force_work += dt * applied.dot(s.grip * s.velocity.head(s.tool_freedoms));
     }
     output.fell_back = output.fell_back || !settled;
     book(model, data, hand.held ? hand.force : Wrench(Wrench::Zero()), share, dt, output);

@@ -40,6 +40,7 @@ void load_tool(const Model& model, Data& data);
 void store_tool(const Model& model, Data& data);
 // motion of `dt` at the present velocity; a linkage's coordinates and links wait for the end of the step
 void move_tool(const Model& model, Data& data, double dt);
+void begin_tool_step(const Model& model, Data& data);
 void end_tool_step(const Model& model, Data& data);
 // poses and velocities of links, held link and kinematics that follow from the state
 void place_tool(const Model& model, Data& data);

@@ -264,7 +264,8 @@ class PrimalSolver {
                     continue;
                 const double k = dt_ * t.stiffness + t.damping;
                 const double bound = friction_bound(t, normal_sum(s_, t));
-                t.force = relax(tangent(i), k, -t.stiffness * t.spring - k * slip_rate(i), t.force, -bound, bound);
+                t.force =
+                    relax(tangent(i), k, -t.stiffness * t.spring - k * slip_rate(i), t.force, -bound, bound);
             }
         }
         for (int i = 0; i < s_.points; ++i)

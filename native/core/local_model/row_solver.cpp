@@ -1,12 +1,14 @@
 // A long linkage in O(n) for each row.
 //
 // The equation of integrate.cpp is A0 v+ = D v + h f0 + h R' f, with A0 = D + h (h k_j + b_j) for the joints,
-// f0 all constant forces, R the rows (grip, points, patches) and f the forces along them. The articulated-body
-// method solves with A0 in O(n), so with v0 = v + A0^-1 (h f0 - h (h k_j + b_j) v), Y = A0^-1 R', W = R Y
+// f0 all constant forces, R the rows (grip, points, patches) and f the forces along them. The
+// articulated-body method solves with A0 in O(n), so with v0 = v + A0^-1 (h f0 - h (h k_j + b_j) v), Y =
+// A0^-1 R', W = R Y
 //     v+ = v0 + h Y f,   u = R v+ = R v0 + h W f,
 // and every row has a law that is linear once its mode is known: f = c - k u for a spring and damper (grip,
-// pressing point, sticking patch), f = sigma (mu sum f_p + b) for a slipping patch, f = 0 else. That is a system
-// of as many unknowns as rows. Each law is divided by 1 + h k W_ii, so that infinite stiffness is as good as any.
+// pressing point, sticking patch), f = sigma (mu sum f_p + b) for a slipping patch, f = 0 else. That is a
+// system of as many unknowns as rows. Each law is divided by 1 + h k W_ii, so that infinite stiffness is as
+// good as any.
 
 #include "row_solver.hpp"
 
@@ -100,7 +102,8 @@ class RowSolver {
     void solve_base(Column&& x) {
         const int n = s_.tool_freedoms;
         s_.bias = x.head(n);
-        solve(model_.tool.linkage, data_.linkage, s_.has_joint_springs ? r_.factor : data_.factor, s_.bias, s_.bias);
+        solve(model_.tool.linkage, data_.linkage, s_.has_joint_springs ? r_.factor : data_.factor, s_.bias,
+              s_.bias);
         x.head(n) = s_.bias;
         for (int i = n; i < s_.freedoms; ++i)
             x[i] *= s_.inverse_mass(i, i);
@@ -218,7 +221,8 @@ class RowSolver {
         bool same = true;
         for (int i = 0; i < s_.points; ++i) {
             PointRow& p = point(i);
-            p.force = p.active ? std::max(0.0, r_.force[points_ + i]) : std::max(0.0, spring_force(points_ + i));
+            p.force =
+                p.active ? std::max(0.0, r_.force[points_ + i]) : std::max(0.0, spring_force(points_ + i));
             same = same && p.active == (p.force > 0.0);
             p.active = p.force > 0.0;
         }

@@ -5,11 +5,8 @@
 
 namespace haptics::local {
 
-// Linkages of more freedoms than this are never given a dense matrix as long as their rows are few.
-inline constexpr int k_long_linkage = 8;
-
 inline bool is_long(const Model& model) {
-    return model.tool.articulated && model.tool.linkage.freedoms > k_long_linkage;
+    return model.tool.articulated && model.tool.linkage.freedoms > model.settings.dense_freedoms;
 }
 
 // The rows of the system and of the grip are few enough.

@@ -19,6 +19,8 @@ void reset(const Model& model, Data& data, const LinkageVector& configuration) {
     if (model.tool.articulated) {
         reset(model.tool.linkage, data.linkage);
         data.linkage.position = configuration;
+        data.half_step.setZero(model.tool.linkage.freedoms);
+        data.energy_budget = 0.0;
     } else {
         data.pose = configuration;
         data.velocity.setZero();
@@ -61,7 +63,7 @@ void step_direct(const Model& model, Data& data, const Pose& pose, const Twist& 
 
 void step(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output) {
     output = StepOutput{};
-    local::place_tool(model, data); // who runs the model may have set a state
+    local::begin_tool_step(model, data);
     data.previous = data.patches;
     detect_patches(data.tool, data.neighbors, {model.settings.margin, dt}, data.previous, data.patches);
     local::assemble(model, data, dt);

@@ -22,12 +22,36 @@ std::vector<FigureError> validate(const Surface& s) {
     return check.take();
 }
 
+namespace {
+
+void check_rigid(const ToolModel& tool, FigureCheck& check) {
+    check.range("mass", tool.mass, 1e-6, 1e4, "kg", "Give the tool a mass; 0.1 kg suits a desktop device.");
+    check.range("inertia", tool.inertia, 1e-12, 1e4, "kg m^2",
+                "Leave it at 0 in the scene to have it computed from the shapes.");
+}
+
+// the linkage itself was checked when it was compiled
+void check_linkage(const ToolModel& tool, FigureCheck& check) {
+    const auto links = static_cast<double>(tool.linkage.link_count);
+    check.range("links", links, 1.0, static_cast<double>(k_max_links), "links",
+                "Compile a LinkageSpec into it.");
+    check.range("shape.bodies", static_cast<double>(tool.shape.body_count), links, links, "bodies",
+                "Give the shape one body for each link; a body may be without pieces.");
+    check.range("grip.link", static_cast<double>(tool.grip.link), 0.0, links - 1.0, "(link)",
+                "Hold a link that the linkage has.");
+    for (int i = 0; i < 2; ++i)
+        check.range("linkage.gravity", tool.linkage.gravity(i), 0.0, 0.0, "m/s^2",
+                    "Leave it at 0: gravity comes with the neighborhood.");
+}
+
+} // namespace
+
 std::vector<FigureError> validate(const Model& model) {
     FigureCheck check;
-    check.range("mass", model.tool.mass, 1e-6, 1e4, "kg",
-                "Give the tool a mass; 0.1 kg suits a desktop device.");
-    check.range("inertia", model.tool.inertia, 1e-12, 1e4, "kg m^2",
-                "Leave it at 0 in the scene to have it computed from the shapes.");
+    if (model.tool.articulated)
+        check_linkage(model.tool, check);
+    else
+        check_rigid(model.tool, check);
     check.range("grip.x", model.tool.grip.point.x(), -10.0, 10.0, "m", "Put the grip on the tool.");
     check.range("grip.y", model.tool.grip.point.y(), -10.0, 10.0, "m", "Put the grip on the tool.");
     check.range("pieces", static_cast<double>(model.tool.shape.piece_count), 1.0,

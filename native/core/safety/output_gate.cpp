@@ -188,6 +188,7 @@ GateOutput OutputGate::apply(const Wrench& command, const Pose& pose, const Twis
     mark(ramp_ < 1.0, GateFlag::ramping);
     mark(open_ < 1.0, GateFlag::paused);
     double fade = ramp_ * open_;
+    out.fade = fade;
 
     // near the edge and near singular poses
     if (kinematics_) {

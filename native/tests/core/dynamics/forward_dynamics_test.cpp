@@ -18,7 +18,8 @@ double backward_error(const Linkage& linkage, const LinkageVector& force, const 
     const LinkageMatrix mass = haptics::testing::summed_mass_matrix(linkage);
     const LinkageVector bias = haptics::testing::summed_bias(linkage);
     const LinkageVector residual = mass * acceleration + bias - force;
-    const LinkageVector scale = mass.cwiseAbs() * acceleration.cwiseAbs() + bias.cwiseAbs() + force.cwiseAbs();
+    const LinkageVector scale =
+        mass.cwiseAbs() * acceleration.cwiseAbs() + bias.cwiseAbs() + force.cwiseAbs();
     return residual.cwiseAbs().maxCoeff() / scale.maxCoeff();
 }
 

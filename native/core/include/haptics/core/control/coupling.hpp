@@ -15,6 +15,17 @@ enum class Coupling : std::uint8_t {
     direct,           ///< no proxy: contact forces at the device's own pose (baseline)
 };
 
+/// How contact forces and impulses in configuration space become forces at the hand.
+enum class HandForce : std::uint8_t {
+    /// Device and proxy share the grip: S J_h D^-1 tau with S = (J_h D^-1 J_h^T + M_d^-1)^-1. Safe where the
+    /// linkage cannot move.
+    combined,
+    /// Eqs (3) and (7): the dynamically consistent inverse of J_h (Khatib 1995), truncated. Unstable for
+    /// proxies
+    /// much heavier than the device. For comparison.
+    paper,
+};
+
 /// Spring and damper between handle and grip, per freedom.
 struct CouplingGains {
     Vec3 stiffness{0.0, 0.0, 0.0}; ///< N/m, N/m, N m/rad
@@ -31,5 +42,10 @@ CouplingGains default_gains(const Mat3& device_mass, const Mat3& mobility, doubl
 /// S = (J_h D^-1 J_h^T + M_d^-1)^-1: what device and proxy weigh together, seen at the grip. Finite where J_h
 /// D^-1 J_h^T is singular.
 Mat3 combined_mass(const Mat3& grip_mobility, const Mat3& device_mass);
+
+/// (J_h D^-1 J_h^T)^-1, the mass of the proxy at the grip, in the directions in which it is less than 25
+/// times the device's; above 50 times, and where the linkage cannot move at all, zero; between the two a
+/// smooth passage.
+Mat3 truncated_mass(const Mat3& grip_mobility, const Mat3& device_mass);
 
 } // namespace haptics

@@ -20,6 +20,7 @@ struct SessionSettings {
     /// Period of the loop, s, 1e-4 to 4e-3.
     double step{0.001};
     Coupling coupling{Coupling::four_channel};
+    HandForce hand_force{HandForce::combined};
     Mapping mapping;
     /// Coupling gains; all zero chooses default_gains.
     CouplingGains gains;
@@ -37,6 +38,8 @@ struct SessionSettings {
 
 /// Every setting out of range, with its remedy. Allocates; not for the haptic loop.
 std::vector<FigureError> validate(const SessionSettings& settings);
+/// The same, and what does not go together with the tool.
+std::vector<FigureError> validate(const SessionSettings& settings, const Model& model);
 
 /// Owns the local model's data and the controller's state; uses a device and a gate. Loop thread only, but
 /// for the constructor.
@@ -60,6 +63,9 @@ class Session {
     /// The hand takes hold of the tool (the offset between handle and grip freezes, so the force starts at
     /// zero) or lets go.
     void hold(bool held);
+    /// The hand takes hold elsewhere: at once when nothing is held, else after letting go. A link that the
+    /// tool does not have is ignored.
+    void grab(const Grip& grip);
     /// Asks the gate to arm; the answer is in the next report's `armed` and in `arm_result()`.
     void arm();
     void disarm();
@@ -82,12 +88,15 @@ class Session {
         return settings_.mapping.to_device(grip - grab_offset_);
     }
     [[nodiscard]] const Pose& grab_offset() const { return grab_offset_; }
+    /// Coordinates of a linkage now, rad and m.
+    [[nodiscard]] const LinkageVector& configuration() const { return data_->linkage.position; }
 
   private:
     [[nodiscard]] bool feeds_forward() const;
     [[nodiscard]] Mat3 loop_mobility() const;
     [[nodiscard]] double stored_energy() const;
     void grasp();
+    void freeze_offset();
     void read_device();
     void run_model();
     [[nodiscard]] Wrench command();
@@ -113,9 +122,13 @@ class Session {
     Pose grab_offset_{0.0, 0.0, 0.0};
     Mat3 device_mass_{Mat3::Identity()};
     Mat3 mobility_{Mat3::Zero()};
-    Mat3 combined_{Mat3::Zero()};
+    /// What weighs a grip acceleration into a force (settings.hand_force).
+    Mat3 felt_mass_{Mat3::Zero()};
+    /// Grip to be taken once the present one has been let go.
+    Grip next_grip_;
+    bool regrab_{false};
     /// Part of the last command that the gate let through.
-    double share_{0.0};
+    double share_{1.0};
     bool held_{false};
     /// How firmly the hand holds, 0..1: taking hold and letting go fade the coupling, so that no force jumps.
     double grasp_{0.0};

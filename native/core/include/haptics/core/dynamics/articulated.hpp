@@ -32,7 +32,8 @@ void factorize(const LinkageModel& model, const LinkageData& data, const Linkage
 /// factorize() and acceleration = D^-1 (force - C - G) in one sweep; `factor` can be used by solve()
 /// afterwards.
 void articulated_acceleration(const LinkageModel& model, const LinkageData& data, const LinkageVector& force,
-                              const LinkageVector* added, ArticulatedFactor& factor, LinkageVector& acceleration);
+                              const LinkageVector* added, ArticulatedFactor& factor,
+                              LinkageVector& acceleration);
 /// solution = D^-1 right_side in O(n). The two may be the same vector. `data` as it was when factorized.
 void solve(const LinkageModel& model, const LinkageData& data, const ArticulatedFactor& factor,
            const LinkageVector& right_side, LinkageVector& solution);

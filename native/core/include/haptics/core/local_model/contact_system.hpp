@@ -132,6 +132,12 @@ struct ContactSystem {
     LinkageVector tool_force;
     /// What the coordinates of a linkage changed by since the step began.
     LinkageVector displacement;
+    /// Coordinates and velocity of a linkage when the step began, and what collisions changed it by since.
+    LinkageVector start_position;
+    LinkageVector start_velocity;
+    /// Work of all forces but Coriolis and collisions since the step began, J.
+    double force_work{0.0};
+    LinkageVector jump;
     LinkageVector tool_weight;
     /// `mass` and `inverse_mass` hold the tool's part (a long linkage has them only when asked for).
     bool has_mass{false};

@@ -42,6 +42,10 @@ struct Data {
     /// Proxy in configuration space, and what follows from it, when the tool is a linkage.
     LinkageData linkage;
     ArticulatedFactor factor;
+    /// Half of what the last step's forces changed the velocity by.
+    LinkageVector half_step;
+    /// Most that the kinetic energy of a linkage may be, J (see proxy.cpp).
+    double energy_budget{0.0};
     Slots<JointMemory, k_max_freedoms> joint;
     /// Where the tool is held.
     Grip grip;

@@ -61,9 +61,11 @@ struct StepOutput {
     Wrench environment{0.0, 0.0, 0.0};
     /// Contact forces on all links, about the grip.
     Wrench contact{0.0, 0.0, 0.0};
-    /// Acceleration J_h D^-1 (tau - C) + J_h' q' of the grip without the hand: from contacts, gravity, limits,
-    /// springs, damping and friction of joints, and the motion itself.
+    /// J_h D^-1 (tau - C): what the grip's acceleration without the hand owes to forces, mean of the step:
+    /// contacts, gravity, limits, springs, damping and friction of joints, Coriolis and centrifugal terms.
     Vec3 grip_acceleration{0.0, 0.0, 0.0};
+    /// J_h' q': what it owes to the motion itself, mean of the step.
+    Vec3 grip_bias{0.0, 0.0, 0.0};
     /// J_h D^-1 J_h^T at the grip (rows of freedoms that are not held are zero).
     Mat3 grip_mobility{Mat3::Zero()};
     /// Velocity change of the grip by collisions in this step (eq. 6 seen at the hand), m/s, m/s, rad/s.

@@ -47,6 +47,8 @@ struct LocalModelSettings {
     double margin{0.0005};
     /// Most collision events resolved at their own time within one step; later ones wait for the next step.
     int max_events{4};
+    /// Linkages of more freedoms than this are solved row by row, in O(n), while their contacts are few.
+    int dense_freedoms{8};
 };
 
 /// What the user holds: a rigid body in the axes of its center of mass, or a whole linkage.

@@ -1,6 +1,6 @@
 #pragma once
-/// Rows over the freedoms of a system, one after the other in memory. A plain array behind Eigen's maps: Eigen
-/// itself refuses to hold a matrix of this size without the heap.
+/// Rows over the freedoms of a system, one after the other in memory. A plain array behind Eigen's maps:
+/// Eigen itself refuses to hold a matrix of this size without the heap.
 
 #include <haptics/core/contact/collision.hpp>
 

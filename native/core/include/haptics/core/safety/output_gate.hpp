@@ -49,6 +49,8 @@ struct GateOutput {
     /// What goes to the device (N, N, N m): always finite, within every limit.
     Wrench applied{0.0, 0.0, 0.0};
     GateFlag flags{GateFlag::none};
+    /// Start ramp times pause, 0..1; 0 when disarmed.
+    double fade{0.0};
     /// Latched faults.
     Fault faults{Fault::none};
 };
