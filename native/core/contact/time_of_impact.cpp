@@ -24,7 +24,7 @@ constexpr double k_never = std::numeric_limits<double>::infinity();
 constexpr double k_touch = 1e-9;
 /// Aim of the advancement, m: between 0 and k_touch.
 constexpr double k_aim = 5e-10;
-constexpr int k_advances = 64;
+constexpr int k_advances = 256;
 constexpr int k_chords = 16;
 /// Cosine between the normals of the patch and of its impact.
 constexpr double k_same_way = 0.2;
