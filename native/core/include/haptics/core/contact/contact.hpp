@@ -6,6 +6,7 @@
 #include <haptics/core/contact/surface.hpp>
 #include <haptics/core/types.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -81,8 +82,18 @@ struct Patch {
 /// Most patches of one step; what exceeds it is counted as overflow, the deepest are kept.
 inline constexpr int k_max_patches = 64;
 
-/// Fixed-capacity list of the step's patches.
+/// Fixed-capacity list of the step's patches. A copy takes the patches in use and no more.
 struct PatchList {
+    PatchList() = default;
+    PatchList(const PatchList& other) { *this = other; }
+    PatchList& operator=(const PatchList& other) {
+        count = other.count;
+        overflow = other.overflow;
+        std::copy_n(other.patch.begin(), other.count, patch.begin());
+        return *this;
+    }
+    ~PatchList() = default;
+
     std::int32_t count{0};
     /// Patches found but dropped since the start (a reported fault when it grows).
     std::uint64_t overflow{0};
