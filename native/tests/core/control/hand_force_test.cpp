@@ -206,8 +206,8 @@ TEST_SUITE("hand force") {
             tool.session->step();
         Wrench last = tool.session->report().force;
         for (int k = 0; k < 6; ++k) {
-            // fading out over 0.1 s changes a force by at most 1.5 % a step, the hand moves on meanwhile, and fading
-            // in catches a link that may swing
+            // fading out over 0.1 s changes a force by at most 1.5 % a step, the hand moves on meanwhile, and
+            // fading in catches a link that may swing
             const double allowed = std::max(0.15, 0.05 * last.head<2>().norm());
             double largest = 0.0;
             tool.session->grab(Grip{k % 3, Vec2(0.02 * (k % 2), 0.0), k % 2 == 0});
