@@ -60,7 +60,7 @@ void choose_island(Data& data) {
     for (int i = 0; i < data.movable_count; ++i)
         data.movable[static_cast<std::size_t>(i)].row = k_none;
     int rows = data.system.tool_freedoms;
-    bool grew = true;
+    bool grew = data.plan.runs(Stage::movables);
     while (grew) {
         grew = false;
         for (int i = 0; i < data.patches.count; ++i) {
@@ -87,6 +87,8 @@ void add_side(const Model& model, const Data& data, std::int32_t body, int row, 
         add_tool_row(model, data, body, p, n, sign, target);
         return;
     }
+    if (row == k_none && !data.plan.runs(Stage::moving_walls))
+        return;
     const Body& b = body_of(data, body);
     const Vec2 arm = p - b.pose.head<2>();
     if (row == k_none) {
@@ -174,11 +176,13 @@ void add_joint_friction(const Model& model, const JointSpec& joint, int i, doubl
 // limits within reach, and friction, of the tool's joints
 void assemble_joints(const Model& model, Data& data, double dt) {
     const LinkageModel& linkage = model.tool.linkage;
-    if (!model.tool.articulated || !linkage.has_passive)
+    const bool any = data.plan.runs(Stage::joint_limits) || data.plan.runs(Stage::joint_friction);
+    if (!model.tool.articulated || !linkage.has_passive || !any)
         return;
     for (int i = linkage.floating ? 3 : 0; i < linkage.freedoms; ++i) {
-        add_limit(linkage.passive[i], i, dt, data);
-        if (linkage.passive[i].friction > 0.0)
+        if (data.plan.runs(Stage::joint_limits))
+            add_limit(linkage.passive[i], i, dt, data);
+        if (data.plan.runs(Stage::joint_friction) && linkage.passive[i].friction > 0.0)
             add_joint_friction(model, linkage.passive[i], i, dt, data);
     }
 }
@@ -255,11 +259,13 @@ void assemble(const Model& model, Data& data, double dt) {
             middle += point.weight * point.position;
             ++s.points;
         }
+        ++s.patches;
+        if (!data.plan.runs(Stage::friction))
+            continue;
         const Vec2 tangent = perpendicular(p.normal);
-        double* row = &s.tangent_rows(s.patches, 0);
+        double* row = &s.tangent_rows(s.patches - 1, 0);
         add_side(model, data, p.body_a, row_a, middle, tangent, 1.0, row, t.drive);
         add_side(model, data, p.body_b, row_b, middle, tangent, -1.0, row, t.drive);
-        ++s.patches;
     }
     assemble_joints(model, data, dt);
 }

@@ -185,6 +185,7 @@ void take_neighborhood(const Neighborhood& n, Data& data) {
     data.snapshot_time = n.time;
     data.tick = n.tick;
     data.gravity = n.gravity;
+    data.plan = n.plan;
     take_movables(n, data);
     local::move_neighbors(data, 0.0);
 }

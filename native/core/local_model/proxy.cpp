@@ -167,7 +167,8 @@ void write_tool_mass(const Model& model, Data& data) {
         need_inverse(model, data);
     }
     write_tool_force(model, data);
-    for (int i = tool.linkage.floating ? 3 : 0; tool.linkage.has_passive && i < n; ++i) {
+    const bool springs = tool.linkage.has_passive && data.plan.runs(Stage::joint_springs);
+    for (int i = tool.linkage.floating ? 3 : 0; springs && i < n; ++i) {
         const JointSpec& joint = tool.linkage.passive[i];
         s.has_joint_springs = s.has_joint_springs || joint.spring_stiffness > 0.0 || joint.damping > 0.0;
     }
@@ -181,10 +182,13 @@ void write_tool_force(const Model& model, Data& data) {
     data.linkage.velocity += data.half_step;
     update_kinematics(model.tool.linkage, data.linkage);
     data.linkage.velocity = s.bias;
-    bias_forces(model.tool.linkage, data.linkage, Vec2::Zero(), s.bias);
+    if (data.plan.runs(Stage::coriolis))
+        bias_forces(model.tool.linkage, data.linkage, Vec2::Zero(), s.bias);
+    else
+        s.bias.setZero();
     s.external.head(s.tool_freedoms) = -s.bias;
     s.tool_weight.setZero(s.tool_freedoms);
-    if (data.gravity.isZero(0.0))
+    if (!data.plan.runs(Stage::gravity) || data.gravity.isZero(0.0))
         return;
     s.tool_weight = s.bias;
     bias_forces(model.tool.linkage, data.linkage, data.gravity, s.bias);

@@ -14,6 +14,18 @@
 #include "internal.hpp"
 
 namespace haptics {
+namespace {
+
+void find_contacts(const Model& model, Data& data, double dt) {
+    if (!data.plan.runs(Stage::detection)) {
+        data.patches.count = 0;
+        return;
+    }
+    data.previous = data.patches;
+    detect_patches(data.tool, data.neighbors, {model.settings.margin, dt}, data.previous, data.patches);
+}
+
+} // namespace
 
 void reset(const Model& model, Data& data, const LinkageVector& configuration) {
     if (model.tool.articulated) {
@@ -52,8 +64,7 @@ void step_direct(const Model& model, Data& data, const Pose& pose, const Twist& 
     data.velocity = velocity;
     local::move_neighbors(data, dt);
     local::place_tool(model, data);
-    data.previous = data.patches;
-    detect_patches(data.tool, data.neighbors, {model.settings.margin, dt}, data.previous, data.patches);
+    find_contacts(model, data, dt);
     local::assemble(model, data, dt);
     output.grip_mobility = local::mobility(model, data);
     local::explicit_forces(model, data, dt, output);
@@ -64,14 +75,14 @@ void step_direct(const Model& model, Data& data, const Pose& pose, const Twist& 
 void step(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output) {
     output = StepOutput{};
     local::begin_tool_step(model, data);
-    data.previous = data.patches;
-    detect_patches(data.tool, data.neighbors, {model.settings.margin, dt}, data.previous, data.patches);
+    find_contacts(model, data, dt);
     local::assemble(model, data, dt);
 
     output.grip_mobility = local::mobility(model, data);
 
     double left = dt;
-    for (int event = 0; event < model.settings.max_events; ++event) {
+    const int events = data.plan.runs(Stage::collisions) ? model.settings.max_events : 0;
+    for (int event = 0; event < events; ++event) {
         const double time = local::next_collision(model, data, left);
         if (time < 0.0)
             break;

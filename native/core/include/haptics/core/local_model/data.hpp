@@ -7,6 +7,7 @@
 #include <haptics/core/local_model/model.hpp>
 #include <haptics/core/local_model/movable.hpp>
 #include <haptics/core/local_model/neighborhood.hpp>
+#include <haptics/core/local_model/plan.hpp>
 
 #include <array>
 #include <cstdint>
@@ -57,6 +58,8 @@ struct Data {
     double snapshot_time{0.0};
     double tick{1.0 / 60.0};
     Vec2 gravity{0.0, 0.0};
+    /// Stages that run.
+    Plan plan;
     std::array<Track, k_max_bodies> track;
     std::int32_t movable_count{0};
     /// Movables of the snapshot that found no place and act as kinematic (a reported fault).

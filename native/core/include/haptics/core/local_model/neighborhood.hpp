@@ -4,6 +4,7 @@
 
 #include <haptics/core/contact/body.hpp>
 #include <haptics/core/local_model/movable.hpp>
+#include <haptics/core/local_model/plan.hpp>
 
 #include <array>
 #include <cstdint>
@@ -25,6 +26,8 @@ struct Neighborhood {
     std::array<MovableBelief, k_max_movables> echo;
     /// Acceleration of free fall in scene axes, m/s^2.
     Vec2 gravity{0.0, 0.0};
+    /// Stages that the step needs with these bodies (choose_plan); leaves out nothing unless chosen.
+    Plan plan;
     /// Bodies that did not fit (a reported fault).
     std::int32_t overflow{0};
     BodySet bodies;
