@@ -119,3 +119,26 @@ func test_a_surface_that_changes_is_felt() -> void:
 	(scene.get_node("Wall") as HapticWall2D).surface.stiffness = 7500.0
 	await wait_physics_frames(60)
 	assert_almost_eq(world.get_penetration(), 2.0 / 7500.0, 5e-6)
+
+
+func test_the_plan_leaves_out_what_the_scene_does_not_need_and_says_why() -> void:
+	var world := Scene.make_world(Vector2(0, 2))
+	var scene := _push(world, Transform2D.IDENTITY)
+	add_child_autofree(scene)
+	await wait_physics_frames(5)
+	var plan := world.get_plan()
+	assert_has(plan, "contact detection: runs")
+	assert_has(plan, "friction: left out, no pair of surfaces has friction")
+	assert_has(plan, "gravity: left out, gravity is zero")
+	assert_has(plan, "movable neighbors: left out, nothing near has a mass that can be pushed")
+	# a rough wall comes near while it runs: the next snapshot brings the stage with it
+	var wall: HapticWall2D = Scene.make_wall(Vector2(0, -90), Vector2(480, 40))
+	wall.surface = HapticSurface.new()
+	wall.surface.static_friction = 0.5
+	wall.surface.dynamic_friction = 0.4
+	scene.add_child(wall)
+	await wait_physics_frames(5)
+	assert_has(world.get_plan(), "friction: runs")
+	assert_eq(world.get_statistics()["kernel"], "rigid tool, 3 freedoms, fixed size")
+	world.stop()
+	assert_eq(world.get_plan().size(), 0)

@@ -341,6 +341,18 @@ func get_statistics() -> Dictionary:
 	return _session.native.get_statistics() if is_running() else {}
 
 
+## What a haptic step does and what it leaves out for this scene, a line each: the stage, and the
+## reason when it is left out. Empty when it does not run.
+func get_plan() -> PackedStringArray:
+	var lines := PackedStringArray()
+	for stage: Dictionary in get_statistics().get("plan", []):
+		var reason: String = stage["reason"]
+		lines.append(
+			"%s: %s" % [stage["stage"], "runs" if stage["runs"] else "left out, %s" % reason]
+		)
+	return lines
+
+
 ## The newest report, in the order of HapticServer.STATE_*, SI and y up; empty when it does not run.
 func get_state() -> PackedFloat64Array:
 	return _session.state if is_running() else PackedFloat64Array()

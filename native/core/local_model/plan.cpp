@@ -71,14 +71,14 @@ Plan choose_plan(const Model& model, const Neighborhood& n) {
     const bool articulated = model.tool.articulated;
     const bool near = n.bodies.body_count > 0;
     const bool limits = articulated && any_joint(model, [](const JointSpec& j) {
-        return std::isfinite(j.lower_limit) || std::isfinite(j.upper_limit);
-    });
+                            return std::isfinite(j.lower_limit) || std::isfinite(j.upper_limit);
+                        });
     need(Stage::detection, near);
     need(Stage::moving_walls, any_body(n, [](const Body& b) { return b.kind == BodyKind::kinematic; }));
     need(Stage::movables, any_body(n, [](const Body& b) { return b.kind == BodyKind::movable; }));
     need(Stage::collisions, (near || limits) && model.settings.contact_mode == ContactMode::penalty_impulse);
-    need(Stage::restitution, plan.runs(Stage::collisions) &&
-                                 any_pair(model, n, [](const Surface& s) { return s.restitution; }));
+    need(Stage::restitution,
+         plan.runs(Stage::collisions) && any_pair(model, n, [](const Surface& s) { return s.restitution; }));
     need(Stage::friction, any_pair(model, n, [](const Surface& s) {
              return std::max(s.static_friction, s.dynamic_friction);
          }));
@@ -86,7 +86,8 @@ Plan choose_plan(const Model& model, const Neighborhood& n) {
     need(Stage::linkage, articulated);
     need(Stage::coriolis, articulated && model.tool.linkage.coriolis);
     need(Stage::joint_limits, limits);
-    need(Stage::joint_friction, articulated && any_joint(model, [](const JointSpec& j) { return j.friction > 0.0; }));
+    need(Stage::joint_friction,
+         articulated && any_joint(model, [](const JointSpec& j) { return j.friction > 0.0; }));
     need(Stage::joint_springs, articulated && any_joint(model, [](const JointSpec& j) {
                                    return j.spring_stiffness > 0.0 || j.damping > 0.0;
                                }));

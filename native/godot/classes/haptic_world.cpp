@@ -134,6 +134,10 @@ void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const doub
     n.echo_step = echo_step_;
     n.echo = echo_;
     n.echo_count = echo_count_;
+    // only the stages that the step needs with these bodies; the tool and the method never change while it
+    // runs
+    n.plan = choose_plan(runner_->session().model(), n);
+    plan_ = n.plan;
     runner_->publish();
     ++ve_ticks_;
 }
@@ -299,9 +303,27 @@ Dictionary HapticWorld::statistics() const {
         if ((static_cast<std::uint32_t>(report_.faults) >> bit) & 1U)
             faults.push_back(describe_fault(bit));
     d["faults"] = faults;
+    d["kernel"] = String(std::string(kernel_name(runner_->session().model())));
+    d["plan"] = plan();
     d["coupling_stiffness_n_m"] = gains_.stiffness.x();
     d["coupling_damping_n_s_m"] = gains_.damping.x();
     return d;
+}
+
+Array HapticWorld::plan() const {
+    Array out;
+    const auto add = [&out](std::string_view stage, bool runs, std::string_view reason) {
+        Dictionary line;
+        line["stage"] = String(std::string(stage));
+        line["runs"] = runs;
+        line["reason"] = String(std::string(reason));
+        out.push_back(line);
+    };
+    for (const PlanLine& line : describe(plan_))
+        add(line.stage, line.runs, line.reason);
+    const bool records = runner_ != nullptr && runner_->recording();
+    add("recorder", records, records ? "" : "nothing is recorded (record_seconds is 0)");
+    return out;
 }
 
 void HapticWorld::aim(const Pose& grip) {

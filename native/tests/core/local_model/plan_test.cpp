@@ -33,9 +33,12 @@ LinkageVector pose(double x, double y, double angle) {
 std::vector<Case> cases() {
     std::vector<Case> all;
     all.push_back({"nothing near", shared::box_tool(), shared::empty_world(), pose(0, 0.02, 0.1)});
-    all.push_back({"smooth floor", shared::box_tool(), shared::floor_of(3, surface(0, 0)), pose(0, 0.013, 0.1)});
-    all.push_back({"rough floor", shared::box_tool(), shared::floor_of(1, surface(0.4, 0)), pose(0, 0.013, 0.1)});
-    all.push_back({"springy floor", shared::box_tool(), shared::floor_of(1, surface(0.2, 0.7)), pose(0, 0.013, 0.1)});
+    all.push_back(
+        {"smooth floor", shared::box_tool(), shared::floor_of(3, surface(0, 0)), pose(0, 0.013, 0.1)});
+    all.push_back(
+        {"rough floor", shared::box_tool(), shared::floor_of(1, surface(0.4, 0)), pose(0, 0.013, 0.1)});
+    all.push_back(
+        {"springy floor", shared::box_tool(), shared::floor_of(1, surface(0.2, 0.7)), pose(0, 0.013, 0.1)});
     auto moving = shared::floor_of(1, surface(0.3, 0.1));
     moving->bodies.body[0].kind = BodyKind::kinematic;
     moving->bodies.body[0].velocity = Twist(0.05, 0.02, 0.1);
@@ -49,7 +52,8 @@ std::vector<Case> cases() {
     object->gravity = Vec2(0.0, -9.81);
     all.push_back({"an object on a floor", shared::box_tool(), std::move(object), pose(0, 0.013, 0.1)});
     LinkageSpec plain = shared::arm();
-    all.push_back({"arm", linkage_tool(plain), shared::floor_of(1, surface(0.3, 0.5)), pose(-0.05, -0.3, 0.2)});
+    all.push_back(
+        {"arm", linkage_tool(plain), shared::floor_of(1, surface(0.3, 0.5)), pose(-0.05, -0.3, 0.2)});
     LinkageSpec rich = shared::chain(4);
     for (LinkSpec& link : rich.links) {
         link.joint.lower_limit = -0.5;
@@ -62,8 +66,8 @@ std::vector<Case> cases() {
     auto weight = shared::empty_world(Vec2(0.0, -9.81));
     all.push_back({"chain with joints under gravity", linkage_tool(rich), std::move(weight), four});
     rich.coriolis = false;
-    all.push_back({"the same without Coriolis terms", linkage_tool(rich),
-                   shared::empty_world(Vec2(0.0, -9.81)), four});
+    all.push_back(
+        {"the same without Coriolis terms", linkage_tool(rich), shared::empty_world(Vec2(0.0, -9.81)), four});
     return all;
 }
 
@@ -83,7 +87,8 @@ struct Run {
     }
     void step_at(int i) {
         const double t = 0.001 * i;
-        hand.target = home + Pose(0.01 * std::sin(9.0 * t), -0.01 + 0.01 * std::cos(7.0 * t), 0.1 * std::sin(5.0 * t));
+        hand.target =
+            home + Pose(0.01 * std::sin(9.0 * t), -0.01 + 0.01 * std::cos(7.0 * t), 0.1 * std::sin(5.0 * t));
         step(model, *data, hand, 0.001, out);
     }
     Model model;
@@ -117,7 +122,8 @@ TEST_SUITE("plan") {
                     planned.step_at(i);
                     same = same && full.data->pose == planned.data->pose &&
                            full.data->velocity == planned.data->velocity &&
-                           full.out.contact == planned.out.contact && full.out.coupling == planned.out.coupling &&
+                           full.out.contact == planned.out.contact &&
+                           full.out.coupling == planned.out.coupling &&
                            full.out.grip_acceleration == planned.out.grip_acceleration &&
                            full.out.source_work == planned.out.source_work &&
                            full.out.contacts == planned.out.contacts;
@@ -130,15 +136,16 @@ TEST_SUITE("plan") {
     TEST_CASE("each scene leaves out what it does not need, with the reason") {
         const std::vector<Case> all = cases();
         const auto plan_of = [&](const char* name) {
-            const auto found =
-                std::find_if(all.begin(), all.end(), [&](const Case& c) { return std::string_view(c.name) == name; });
+            const auto found = std::find_if(all.begin(), all.end(),
+                                            [&](const Case& c) { return std::string_view(c.name) == name; });
             REQUIRE(found != all.end());
             return choose_plan(found->model, *found->world);
         };
         const Plan nothing = plan_of("nothing near");
-        for (const char* stage : {"contact detection", "moving walls", "movable neighbors", "collision impulses",
-                                  "restitution", "friction", "gravity", "linkage kinematics", "Coriolis terms",
-                                  "joint limits", "joint friction", "joint springs and dampers"})
+        for (const char* stage :
+             {"contact detection", "moving walls", "movable neighbors", "collision impulses", "restitution",
+              "friction", "gravity", "linkage kinematics", "Coriolis terms", "joint limits", "joint friction",
+              "joint springs and dampers"})
             CHECK(left_out(nothing, stage));
         CHECK(left_out(plan_of("smooth floor"), "friction"));
         CHECK_FALSE(left_out(plan_of("smooth floor"), "contact detection"));

@@ -1,9 +1,9 @@
 #pragma once
 /// What a haptic step does for a given scene, and why it leaves out the rest.
 ///
-/// A plan is chosen off the loop from the tool, the method and a snapshot, travels with that snapshot and takes
-/// effect with it, between two steps. A stage is left out only where it would have done nothing: the motion is
-/// the same to the last bit. Plan{} leaves out nothing.
+/// A plan is chosen off the loop from the tool, the method and a snapshot, travels with that snapshot and
+/// takes effect with it, between two steps. A stage is left out only where it would have done nothing: the
+/// motion is the same to the last bit. Plan{} leaves out nothing.
 
 #include <cstdint>
 #include <string_view>
@@ -16,18 +16,18 @@ struct Neighborhood;
 
 /// Stages of a step that a scene may not need.
 enum class Stage : std::uint8_t {
-    detection,     ///< finding contacts
-    moving_walls,  ///< extrapolating and blending what the scene moves, and its speed in contacts
-    movables,      ///< neighbors with mass: island, beliefs, corrections
-    collisions,    ///< times of impact and collision impulses
-    restitution,   ///< the second phase of collisions
-    friction,      ///< tangent rows, stick and slip
-    gravity,       ///< weights
-    linkage,       ///< kinematics and mass matrix of a linkage
-    coriolis,      ///< velocity terms of a linkage
-    joint_limits,  ///< limit rows
+    detection,      ///< finding contacts
+    moving_walls,   ///< extrapolating and blending what the scene moves, and its speed in contacts
+    movables,       ///< neighbors with mass: island, beliefs, corrections
+    collisions,     ///< times of impact and collision impulses
+    restitution,    ///< the second phase of collisions
+    friction,       ///< tangent rows, stick and slip
+    gravity,        ///< weights
+    linkage,        ///< kinematics and mass matrix of a linkage
+    coriolis,       ///< velocity terms of a linkage
+    joint_limits,   ///< limit rows
     joint_friction, ///< friction rows of joints
-    joint_springs, ///< springs and dampers of joints
+    joint_springs,  ///< springs and dampers of joints
 };
 inline constexpr int k_stage_count = 12;
 
@@ -35,7 +35,9 @@ inline constexpr int k_stage_count = 12;
 struct Plan {
     std::uint32_t stages{(1U << static_cast<unsigned>(k_stage_count)) - 1U};
 
-    [[nodiscard]] bool runs(Stage stage) const { return ((stages >> static_cast<unsigned>(stage)) & 1U) != 0U; }
+    [[nodiscard]] bool runs(Stage stage) const {
+        return ((stages >> static_cast<unsigned>(stage)) & 1U) != 0U;
+    }
     void leave_out(Stage stage) { stages &= ~(1U << static_cast<unsigned>(stage)); }
     friend bool operator==(const Plan&, const Plan&) = default;
 };

@@ -66,6 +66,8 @@ class HapticWorld {
     std::vector<GivenImpulse> take_impulses();
     [[nodiscard]] godot::Array take_events();
     [[nodiscard]] godot::Dictionary statistics() const;
+    /// Stages of the haptic step: stage, runs, and the reason when it is left out.
+    [[nodiscard]] godot::Array plan() const;
     void aim(const Pose& grip);
     bool send(RunnerCommand command);
     void save_recording(const std::string& path, Problems& problems);
@@ -96,6 +98,8 @@ class HapticWorld {
     // beliefs of the report whose impulses were handed out last, and of the one before
     HapticReport given_report_;
     std::uint64_t echo_step_{0};
+    /// Of the newest snapshot.
+    Plan plan_;
     std::array<MovableBelief, k_max_movables> echo_;
     std::int32_t echo_count_{0};
     struct Taken {
