@@ -100,6 +100,15 @@ void add_side(const Model& model, const Data& data, std::int32_t body, int row, 
     target[row + 2] += sign * cross(arm, n);
 }
 
+// the same for a rigid tool and something that is not in the system: the row is written, not added to
+void write_rigid_row(const Data& data, const Body& other, bool moves, const Vec2& p, const Vec2& n,
+                     double* target, double& drive) {
+    target[0] = n.x();
+    target[1] = n.y();
+    target[2] = cross(p - data.pose.head<2>(), n);
+    drive = moves ? n.dot(velocity_at(other.velocity, p - other.pose.head<2>())) : 0.0;
+}
+
 void assemble_mass(const Model& model, Data& data) {
     ContactSystem& s = data.system;
     const int n = s.freedoms;
@@ -217,14 +226,18 @@ void assemble(const Model& model, Data& data, double dt) {
     grip_rows(model, data, s.grip);
     const int n = s.freedoms;
     const int joints = model.tool.articulated && model.tool.linkage.has_passive ? s.tool_freedoms : 0;
+    // the common case needs no look-up: a rigid tool among what it cannot move
+    const bool lone = !model.tool.articulated && data.movable_count == 0;
+    const bool walls_move = data.plan.runs(Stage::moving_walls);
     s.points = 0;
     s.patches = 0;
     s.normal_rows.setZero(2 * data.patches.count + joints, n);
     s.tangent_rows.setZero(data.patches.count + 2 * joints, n);
     for (int i = 0; i < data.patches.count; ++i) {
         const Patch& p = data.patches.patch[static_cast<std::size_t>(i)];
-        const int row_a = first_row(data, p.body_a);
-        const int row_b = first_row(data, p.body_b);
+        const int row_a = lone ? 0 : first_row(data, p.body_a);
+        const int row_b = lone ? k_none : first_row(data, p.body_b);
+        const Body& other = body_of(data, p.body_b);
         if (row_a == k_none && row_b == k_none)
             continue;
         PatchRow& t = s.row[static_cast<std::size_t>(s.patches)];
@@ -254,8 +267,12 @@ void assemble(const Model& model, Data& data, double dt) {
             r.damping = p.surface.damping * point.weight;
             r.was_apart = point.gap > 0.0;
             double* row = &s.normal_rows(s.points, 0);
-            add_side(model, data, p.body_a, row_a, point.position, p.normal, 1.0, row, r.drive);
-            add_side(model, data, p.body_b, row_b, point.position, p.normal, -1.0, row, r.drive);
+            if (lone) {
+                write_rigid_row(data, other, walls_move, point.position, p.normal, row, r.drive);
+            } else {
+                add_side(model, data, p.body_a, row_a, point.position, p.normal, 1.0, row, r.drive);
+                add_side(model, data, p.body_b, row_b, point.position, p.normal, -1.0, row, r.drive);
+            }
             middle += point.weight * point.position;
             ++s.points;
         }
@@ -264,6 +281,10 @@ void assemble(const Model& model, Data& data, double dt) {
             continue;
         const Vec2 tangent = perpendicular(p.normal);
         double* row = &s.tangent_rows(s.patches - 1, 0);
+        if (lone) {
+            write_rigid_row(data, other, walls_move, middle, tangent, row, t.drive);
+            continue;
+        }
         add_side(model, data, p.body_a, row_a, middle, tangent, 1.0, row, t.drive);
         add_side(model, data, p.body_b, row_b, middle, tangent, -1.0, row, t.drive);
     }
