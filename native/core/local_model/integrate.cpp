@@ -26,6 +26,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dense_solver.hpp"
 #include "internal.hpp"
 #include "primal_solver.hpp"
 #include "row_solver.hpp"
@@ -55,33 +56,28 @@ Wrench coupling_force(const Data& data, const HandInput& hand, double dt, double
 }
 
 template <int N>
-bool solve_primal(const Model& model, Data& data, const HandInput& hand, double dt, double left) {
-    if constexpr (N == Eigen::Dynamic)
-        need_mass(model, data);
+bool solve_primal(const Model& model, Data& data, const HandInput& hand, double dt, double left,
+                  Integrator integrator) {
     PrimalSolver<N> solver(model, data, hand, dt, left);
-    if (model.settings.integrator != Integrator::semi_implicit)
-        return solver.linearly_implicit();
-    solver.semi_implicit();
-    return true;
+    return solver.run(integrator);
 }
 
 // velocities and forces at the end of the sub-step; false when the solver used its fallback
-bool solve_step(const Model& model, Data& data, const HandInput& hand, double dt, double left) {
+bool solve_step(const Model& model, Data& data, const HandInput& hand, double dt, double left,
+                Integrator integrator) {
     if (is_long(model) && fits_row_solver(data.system))
-        return solve_by_rows(model, data, hand, dt, left);
+        return solve_by_rows(model, data, hand, dt, left, integrator);
     switch (data.system.freedoms) {
     case 1:
-        return solve_primal<1>(model, data, hand, dt, left);
+        return solve_primal<1>(model, data, hand, dt, left, integrator);
     case 2:
-        return solve_primal<2>(model, data, hand, dt, left);
+        return solve_primal<2>(model, data, hand, dt, left, integrator);
     case 3:
-        return solve_primal<3>(model, data, hand, dt, left);
+        return solve_primal<3>(model, data, hand, dt, left, integrator);
     case 4:
-        return solve_primal<4>(model, data, hand, dt, left);
-    case 6:
-        return solve_primal<6>(model, data, hand, dt, left);
+        return solve_primal<4>(model, data, hand, dt, left, integrator);
     default:
-        return solve_primal<Eigen::Dynamic>(model, data, hand, dt, left);
+        return solve_dense(model, data, hand, dt, left, integrator);
     }
 }
 
@@ -215,7 +211,7 @@ void integrate(const Model& model, Data& data, const HandInput& hand, double dt,
     used.stiffness *= hand.share;
     used.damping *= hand.share;
     const FreedomVector start = s.velocity;
-    bool settled = solve_step(model, data, used, dt, left);
+    bool settled = solve_step(model, data, used, dt, left, model.settings.integrator);
     if (hand.held) {
         // a coupling beyond what the device can answer becomes a constant force of the size it can
         const Wrench full = coupling_force(data, hand, dt, left);
@@ -225,7 +221,7 @@ void integrate(const Model& model, Data& data, const HandInput& hand, double dt,
             used.damping.setZero();
             used.force = hand.force + effective * full;
             s.velocity = start;
-            settled = solve_step(model, data, used, dt, left) && settled;
+            settled = solve_step(model, data, used, dt, left, model.settings.integrator) && settled;
         }
         add_coupling(data, hand, used, dt, left, share, output);
         const Wrench applied = coupling_force(data, used, dt, left) + used.force;
@@ -248,8 +244,7 @@ void integrate(const Model& model, Data& data, const HandInput& hand, double dt,
 
 void explicit_forces(const Model& model, Data& data, double dt, StepOutput& output) {
     const FreedomVector start = data.system.velocity;
-    PrimalSolver<Eigen::Dynamic> solver(model, data, HandInput{}, dt, 0.0);
-    solver.semi_implicit();
+    solve_step(model, data, HandInput{}, dt, 0.0, Integrator::semi_implicit);
     data.system.velocity = start;
     book(model, data, Wrench::Zero(), 1.0, dt, output);
     move_anchors(data.system, dt);

@@ -115,8 +115,6 @@ std::string_view kernel_name(const Model& model) {
         return "linkage, 3 freedoms, fixed size";
     case 4:
         return "linkage, 4 freedoms, fixed size";
-    case 6:
-        return "linkage, 6 freedoms, fixed size";
     default:
         return model.tool.linkage.freedoms > model.settings.dense_freedoms ? "long linkage, row by row"
                                                                            : "linkage, dense matrix";

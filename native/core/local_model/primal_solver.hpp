@@ -8,6 +8,7 @@
 
 #include "contact_rules.hpp"
 #include "internal.hpp"
+#include "small_solve.hpp"
 
 namespace haptics::local {
 
@@ -35,6 +36,14 @@ class PrimalSolver {
         , base_(storage<0>(data.system))
         , work_(storage<1>(data.system)) {
         make_base(hand, left);
+    }
+
+    // true when it settled
+    bool run(Integrator integrator) {
+        if (integrator != Integrator::semi_implicit)
+            return linearly_implicit();
+        semi_implicit();
+        return true;
     }
 
     void semi_implicit() {
@@ -130,19 +139,8 @@ class PrimalSolver {
 
     // x = work^-1 x for a positive definite matrix, which is overwritten
     void solve_symmetric(Vector& x) {
-        if constexpr (N == 3) {
-            // L D L^T without a square root
-            const double l10 = work_(1, 0) / work_(0, 0);
-            const double l20 = work_(2, 0) / work_(0, 0);
-            const double d1 = work_(1, 1) - l10 * work_(1, 0);
-            const double e = work_(2, 1) - l20 * work_(1, 0);
-            const double l21 = e / d1;
-            const double d2 = work_(2, 2) - l20 * work_(2, 0) - l21 * e;
-            const double y1 = x[1] - l10 * x[0];
-            const double y2 = x[2] - l20 * x[0] - l21 * y1;
-            x[2] = y2 / d2;
-            x[1] = y1 / d1 - l21 * x[2];
-            x[0] = x[0] / work_(0, 0) - l10 * x[1] - l20 * x[2];
+        if constexpr (k_fixed) {
+            solve_definite(work_, x);
         } else {
             Eigen::LLT<Eigen::Ref<Square>> factor(work_);
             factor.solveInPlace(x);
@@ -151,8 +149,7 @@ class PrimalSolver {
 
     void solve_general(Vector& x) {
         if constexpr (k_fixed) {
-            const Vector right = x;
-            x = work_.partialPivLu().solve(right);
+            solve_pivoted(work_, x);
         } else {
             Eigen::PartialPivLU<Eigen::Ref<Square>> factor(work_);
             const Vector right = x;
@@ -162,10 +159,21 @@ class PrimalSolver {
 
     // the base is not needed any more once sweeps begin
     void invert_base() {
-        work_ = base_;
-        base_.setIdentity(n_, n_);
-        Eigen::LLT<Eigen::Ref<Square>> factor(work_);
-        factor.solveInPlace(base_);
+        if constexpr (k_fixed) {
+            Square inverse;
+            for (int i = 0; i < N; ++i) {
+                work_ = base_;
+                Vector column = Vector::Unit(i);
+                solve_definite(work_, column);
+                inverse.col(i) = column;
+            }
+            base_ = inverse;
+        } else {
+            work_ = base_;
+            base_.setIdentity(n_, n_);
+            Eigen::LLT<Eigen::Ref<Square>> factor(work_);
+            factor.solveInPlace(base_);
+        }
     }
 
     // first guess: what presses now keeps pressing, what stuck keeps sticking

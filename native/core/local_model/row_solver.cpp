@@ -291,9 +291,10 @@ class RowSolver {
 
 } // namespace
 
-bool solve_by_rows(const Model& model, Data& data, const HandInput& hand, double dt, double left) {
+bool solve_by_rows(const Model& model, Data& data, const HandInput& hand, double dt, double left,
+                   Integrator integrator) {
     RowSolver solver(model, data, hand, dt, left);
-    if (model.settings.integrator != Integrator::semi_implicit)
+    if (integrator != Integrator::semi_implicit)
         return solver.linearly_implicit();
     solver.semi_implicit();
     return true;

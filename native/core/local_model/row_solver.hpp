@@ -15,6 +15,7 @@ inline bool fits_row_solver(const ContactSystem& s) {
 }
 
 // Velocities and forces at the end of the sub-step; false when the sets did not settle.
-bool solve_by_rows(const Model& model, Data& data, const HandInput& hand, double dt, double left);
+bool solve_by_rows(const Model& model, Data& data, const HandInput& hand, double dt, double left,
+                   Integrator integrator);
 
 } // namespace haptics::local
