@@ -8,12 +8,16 @@ set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
 set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG")
 set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g -fno-omit-frame-pointer")
 set(CMAKE_CXX_FLAGS_DEBUG "-O0 -g")
+set(CMAKE_C_FLAGS_RELEASE "-O2 -DNDEBUG")
+set(CMAKE_C_FLAGS_RELWITHDEBINFO "-O1 -g -fno-omit-frame-pointer")
+set(CMAKE_C_FLAGS_DEBUG "-O0 -g")
 
 set(HAPTICS_SANITIZE "" CACHE STRING "Sanitizers, as for -fsanitize=")
 
 find_program(HAPTICS_CCACHE ccache)
 if(HAPTICS_CCACHE)
     set(CMAKE_CXX_COMPILER_LAUNCHER "${HAPTICS_CCACHE}")
+    set(CMAKE_C_COMPILER_LAUNCHER "${HAPTICS_CCACHE}")
 endif()
 
 add_library(haptics_options INTERFACE)
@@ -40,4 +44,13 @@ endif()
 if(HAPTICS_SANITIZE)
     target_compile_options(haptics_options INTERFACE -fsanitize=${HAPTICS_SANITIZE} -fno-sanitize-recover=all)
     target_link_options(haptics_options INTERFACE -fsanitize=${HAPTICS_SANITIZE})
+endif()
+
+# C is for what runs without an operating system (firmware/) and for what has to stand between a program and the C library
+add_library(haptics_c_options INTERFACE)
+target_compile_options(haptics_c_options INTERFACE
+    -Wall -Wextra -Wpedantic -Werror -Wshadow -Wconversion -Wsign-conversion -Wcast-align -Wcast-qual -Wstrict-prototypes
+    -Wmissing-prototypes -Wundef -Wvla -Wformat=2 -Wimplicit-fallthrough "-fmacro-prefix-map=${CMAKE_SOURCE_DIR}/=")
+if(HAPTICS_SANITIZE)
+    target_compile_options(haptics_c_options INTERFACE -fsanitize=${HAPTICS_SANITIZE} -fno-sanitize-recover=all)
 endif()

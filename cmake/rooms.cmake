@@ -5,7 +5,8 @@ set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${CMAKE_SOURCE_D
 find_package(Python3 3.9 REQUIRED COMPONENTS Interpreter)
 
 file(GLOB_RECURSE room_files CONFIGURE_DEPENDS "${CMAKE_SOURCE_DIR}/native/*.hpp" "${CMAKE_SOURCE_DIR}/native/*.cpp"
-    "${CMAKE_SOURCE_DIR}/native/*.h")
+    "${CMAKE_SOURCE_DIR}/native/*.h" "${CMAKE_SOURCE_DIR}/native/*.c" "${CMAKE_SOURCE_DIR}/firmware/*.h"
+    "${CMAKE_SOURCE_DIR}/firmware/*.c")
 set(room_stamp "${CMAKE_BINARY_DIR}/rooms.stamp")
 add_custom_command(OUTPUT "${room_stamp}"
     COMMAND "${Python3_EXECUTABLE}" "${CMAKE_SOURCE_DIR}/tools/lint/check_rooms.py" --quiet --native

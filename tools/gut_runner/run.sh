@@ -39,6 +39,10 @@ home=$root/build/staging/.home
 mkdir -p "$home/data" "$home/config" "$home/cache"
 export XDG_DATA_HOME=$home/data XDG_CONFIG_HOME=$home/config XDG_CACHE_HOME=$home/cache
 
+# for suites that need the library itself, where the system has none
+HAPTICS_TEST_HIDAPI=$("$root/tools/testing/hidapi_library.sh" 2>/dev/null || true)
+export HAPTICS_TEST_HIDAPI
+
 # show NAME: what a reader wants of a part's output; the editor's progress bars tell nothing
 show() {
     if [[ $1 == import ]]; then

@@ -20,6 +20,8 @@ LIBRARY_INCLUDES = {
     "doctest": re.compile(r"doctest(/|\.h)"),
     "benchmark": re.compile(r"benchmark/"),
     "engine": re.compile(r"gdextension_interface\.h$"),
+    "protocol": re.compile(r"haptics_firmware/protocol\.h$"),
+    "firmware": re.compile(r"haptics_firmware/"),
     "simd": re.compile(r"(imm|xmm|emm|smm|tmm|nmm|pmm|avx\w*|x86)intrin\.h$|arm_neon\.h$"),
 }
 # gdextension_interface.h has one reader
@@ -27,7 +29,9 @@ ONLY_IN = {"engine": "native/godot/binder"}
 ENGINE_WORDS = re.compile(r"(?i:godot|gdextension)|\b(Variant|StringName|Node2D|RefCounted|GDCLASS|ClassDB)\b")
 DOMAIN_WORDS = re.compile(r"(?i:pantograph|stiffness|penetration|friction)|\bhaptic_|\bHaptic[A-Z]")
 INCLUDE = re.compile(r'^\s*#\s*(?:include|include_next|import)\s*([<"])([^>"]+)[>"]')
-SOURCES = {".hpp", ".cpp", ".h", ".hh", ".cc", ".cxx", ".inl", ".ipp"}
+SOURCES = {".hpp", ".cpp", ".h", ".hh", ".cc", ".cxx", ".inl", ".ipp", ".c"}
+# what the device's side may include: it has no operating system, and hardly a C library
+FIRMWARE_INCLUDES = re.compile(r"(stddef|stdint|stdbool|limits|string)\.h$|haptics_firmware/")
 
 # Godot's side: files below a folder may not name a path that starts with one of these
 ADDON = "res://addons/haptics/"
@@ -156,6 +160,26 @@ def check_native(root: Path) -> tuple[list[str], int]:
     return found, len(files)
 
 
+def check_firmware(root: Path) -> tuple[list[str], int]:
+    found = []
+    files = sorted(path for path in (root / "firmware").rglob("*") if path.suffix in SOURCES)
+    for file in files:
+        path = file.relative_to(root).as_posix()
+        for number, line in enumerate(without_comments(file.read_text(encoding="utf-8")).splitlines(), 1):
+            include = INCLUDE.match(line)
+            if include is None:
+                continue
+            quote, target = include.groups()
+            if target.startswith("../") or "/../" in target:
+                found.append(f"{path}:{number}: error: '{target}' climbs out of its folder")
+            elif quote == '"':
+                if not (file.parent / target).is_file():
+                    found.append(f'{path}:{number}: error: "{target}" is not in this folder')
+            elif not FIRMWARE_INCLUDES.match(target):
+                found.append(f"{path}:{number}: error: <{target}> is not open to firmware, which runs without an operating system")
+    return found, len(files)
+
+
 def check_scenes(root: Path) -> tuple[list[str], int]:
     found = []
     count = 0
@@ -179,10 +203,13 @@ def check_scenes(root: Path) -> tuple[list[str], int]:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--root", type=Path, default=Path(__file__).resolve().parents[2])
-    parser.add_argument("--native", action="store_true", help="only native/")
+    parser.add_argument("--native", action="store_true", help="only native/ and firmware/")
     parser.add_argument("--quiet", action="store_true", help="say nothing when all is well")
     options = parser.parse_args()
     found, count = check_native(options.root)
+    more, files = check_firmware(options.root)
+    found += more
+    count += files
     if not options.native:
         more, files = check_scenes(options.root)
         found += more

@@ -207,6 +207,11 @@ func press_stop() -> void:
 	server().world_press_stop(_world)
 
 
+## The real device's handle is in its home pose now. Returns what is wrong.
+func home_device() -> PackedStringArray:
+	return server().world_home_device(_world)
+
+
 ## Writes what was recorded as CSV. Returns what went wrong.
 func save_recording(path: String) -> PackedStringArray:
 	return server().world_save_recording(_world, path)

@@ -273,6 +273,18 @@ func press_stop() -> void:
 		_session.native.press_stop()
 
 
+## Gives a device with relative encoders its zero: its handle has to rest in the home pose now, with
+## the force off. OK, or FAILED after errors that say why. Waits for the device, at most a second.
+func home_device() -> Error:
+	if not is_running():
+		push_error("%s: the world does not run, so no device can be homed. Start it." % get_path())
+		return FAILED
+	var problems := _session.native.home_device()
+	for text: String in problems:
+		push_error("%s: %s" % [get_path(), text])
+	return OK if problems.is_empty() else FAILED
+
+
 ## The hand takes hold of the tool, or lets go.
 func hold(held: bool = true) -> void:
 	if is_running():

@@ -29,6 +29,9 @@ double pass_fraction(const Wrench& command, const GateOutput& gate, double last)
     return std::clamp(gate.applied.dot(command) / (gate.fade * size), 0.0, 1.0);
 }
 
+// a handle is moved on by its velocity for so long, s; beyond that the velocity says too little
+constexpr double k_most_ahead = 0.003;
+
 double spring_energy(const Vec3& stiffness, const Wrench& force) {
     double energy = 0.0;
     for (int i = 0; i < 3; ++i)
@@ -54,6 +57,7 @@ std::vector<FigureError> validate(const SessionSettings& s) {
                     "0 chooses it from device mass and rate.");
         check.range("reading_error", s.reading_error(i), 0.0, 0.1, "m", "Half an encoder step.");
     }
+    check.range("device_patience", s.device_patience, 0.002, 1.0, "s", "0.02 is the default.");
     check.range("velocity_window", static_cast<double>(s.velocity_window), 1.0, 63.0, "samples",
                 "2 is the default.");
     check.range("device_delay", s.device_delay, 0.0, 1.0, "s", "Most devices add less than 0.001 s.");
@@ -127,10 +131,12 @@ void Session::grasp() {
 
 void Session::arm() {
     arm_wanted_ = true;
+    forgive_ = gate_.faults();
 }
 
 void Session::disarm() {
     arm_wanted_ = false;
+    forgive_ = Fault::none;
     gate_.disarm();
 }
 
@@ -160,14 +166,59 @@ void Session::read_device() {
     const std::uint64_t last = reading_.sequence;
     missing_ = !device_.read(reading_);
     fresh_ = !missing_ && (reading_.sequence != last || last == 0);
-    if (fresh_) {
-        const Twist twist =
-            reading_.has_velocity ? reading_.velocity : velocity_.update(reading_.pose, settings_.step);
-        handle_velocity_ = settings_.mapping.twist_to_scene(twist);
-        handle_ = settings_.mapping.to_scene(reading_.pose);
+    // a device that found or lost its zero, or was away, may be anywhere
+    const bool elsewhere =
+        !missing_ && (reading_.homed != gate_.homed() || (fresh_ && silent_for_ > settings_.device_patience));
+    if (elsewhere) {
+        gate_.set_homed(reading_.homed);
+        velocity_.reset();
+        handle_velocity_.setZero();
+    }
+    follow_handle();
+    if (elsewhere) {
+        // the coupling starts anew, without tension
+        grasp_ = 0.0;
+        grasping_ = 0.0;
+        freeze_offset();
     }
     hand_force_ = reading_.has_hand_force ? settings_.mapping.wrench_to_scene(reading_.hand_force)
                                           : Wrench(Wrench::Zero());
+}
+
+void Session::follow_handle() {
+    const Mapping& map = settings_.mapping;
+    silent_for_ += settings_.step;
+    age_ += settings_.step;
+    if (fresh_) {
+        const double interval = reading_.interval > 0.0 ? reading_.interval : silent_for_;
+        silent_for_ = 0.0;
+        age_ = reading_.age;
+        handle_velocity_ = map.twist_to_scene(
+            reading_.has_velocity ? reading_.velocity : velocity_.update(reading_.pose, interval));
+    }
+    handle_ = map.to_scene(reading_.pose);
+    if (age_ > 0.0)
+        handle_ += std::min(age_, k_most_ahead) * handle_velocity_;
+}
+
+Fault Session::device_faults() const {
+    // half a step of slack: the sum of many steps is not exact
+    const bool silent = silent_for_ > settings_.device_patience + 0.5 * settings_.step;
+    return reading_.faults | (silent ? Fault::reconnect_the_device : Fault::none);
+}
+
+// arms by itself only where nothing ever went wrong; a fault takes an explicit arm() that came after its
+// cause was gone and the device was homed
+void Session::try_to_arm(Fault device) {
+    if (!arm_wanted_ || gate_.armed() || (gate_.faults() != Fault::none && gate_.faults() != forgive_))
+        return;
+    arm_result_ = device != Fault::none ? ArmResult::remove_the_cause_first : gate_.arm(output_.contacts > 0);
+    if (arm_result_ == ArmResult::remove_the_cause_first || arm_result_ == ArmResult::home_the_device_first)
+        forgive_ = Fault::none;
+    if (arm_result_ != ArmResult::armed)
+        return;
+    forgive_ = Fault::none;
+    ledger_.reset(reading_.pose, stored_energy());
 }
 
 void Session::run_model() {
@@ -228,6 +279,8 @@ void Session::step() {
     read_device();
     if (fresh_) {
         ledger_.book(reading_.pose, stored_energy(), output_.source_work);
+        force_sum_.setZero();
+        force_count_ = 0.0;
     }
     device_mass_ = settings_.mapping.mass_to_scene(device_.handle_mass(reading_.pose));
     grasp();
@@ -235,15 +288,16 @@ void Session::step() {
     const Wrench force = command();
     const Wrench wanted = gate_.armed() ? settings_.mapping.wrench_to_device(force) : Wrench(Wrench::Zero());
     const Twist device_twist = settings_.mapping.twist_to_device(handle_velocity_);
-    if (arm_wanted_ && !gate_.armed() && gate_.faults() == Fault::none) {
-        arm_result_ = gate_.arm(output_.contacts > 0);
-        if (arm_result_ == ArmResult::armed)
-            ledger_.reset(reading_.pose, stored_energy());
-    }
+    const Fault device = device_faults();
+    gate_.raise(device);
+    try_to_arm(device);
     const GateOutput gated = gate_.apply(wanted, reading_.pose, device_twist, settings_.step);
     share_ = pass_fraction(wanted, gated, share_);
     device_.write(gated.applied);
-    ledger_.set_force(gated.applied);
+    // the handle felt all forces since its last sample
+    force_sum_ += gated.applied;
+    force_count_ += 1.0;
+    ledger_.set_force(force_sum_ / force_count_);
     device_.advance(settings_.step);
     write_report(gated, wanted);
 }

@@ -18,6 +18,12 @@ const char* describe_fault(int bit) {
         "No sample came from the device in time. Reconnect the device, then re-arm.",
         "Stop was pressed. Release the stop, then re-arm.",
         "The controller creates energy. Lower the stiffness, then re-arm.",
+        "An encoder jumped or reports an error. Check the encoder's wiring, home the device again, then "
+        "re-arm.",
+        "No command reached the device in time, so it let its motors go. Close other programs or lower the "
+        "rate, "
+        "then re-arm.",
+        "The device reports a fault of its own (motor driver or heat). Let it recover, then re-arm.",
     };
     return bit >= 0 && bit < k_fault_count ? k_text[static_cast<std::size_t>(bit)] : "";
 }

@@ -276,6 +276,13 @@ void HapticServer::world_press_stop(int64_t world) {
         w->send(RunnerCommand::stop);
 }
 
+PackedStringArray HapticServer::world_home_device(int64_t world) {
+    Problems problems;
+    if (HapticWorld* w = find(world))
+        w->home_device(problems);
+    return problems.to_godot();
+}
+
 PackedStringArray HapticServer::world_save_recording(int64_t world, const String& path) {
     Problems problems;
     if (HapticWorld* w = find(world))
@@ -313,6 +320,7 @@ void HapticServer::_bind_methods() {
     ClassDB::bind_method(D_METHOD("world_arm", "world", "armed"), &HapticServer::world_arm);
     ClassDB::bind_method(D_METHOD("world_set_paused", "world", "paused"), &HapticServer::world_set_paused);
     ClassDB::bind_method(D_METHOD("world_press_stop", "world"), &HapticServer::world_press_stop);
+    ClassDB::bind_method(D_METHOD("world_home_device", "world"), &HapticServer::world_home_device);
     ClassDB::bind_method(D_METHOD("world_save_recording", "world", "path"),
                          &HapticServer::world_save_recording);
 

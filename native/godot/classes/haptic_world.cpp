@@ -1,8 +1,8 @@
 #include <haptics/classes/haptic_world.hpp>
 #include <haptics/core/local_model/validate.hpp>
 
+#include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace haptics {
 
@@ -10,35 +10,11 @@ using namespace godot;
 
 namespace {
 
-// largest error of a reading per coordinate, for the velocity estimate
-Vec3 reading_error(const SimulatedPantographOptions& o) {
-    switch (o.encoder_model) {
-    case EncoderModel::exact:
-        return {1e-9, 1e-9, 1e-8};
-    case EncoderModel::handle:
-        return 0.5 * o.encoder_resolution;
-    case EncoderModel::joint:
-        break;
-    }
-    // half a count at the motor axis, seen at the end of a stretched arm
-    const FiveBarGeometry& bar = o.geometry.bar[0];
-    const double half = std::numbers::pi / o.geometry.motor.counts_per_revolution;
-    const double reach = bar.proximal_length[0] + bar.distal_length[0];
-    const double lever = (o.geometry.attachment[0] - o.geometry.attachment[1]).norm();
-    return {half * reach, half * reach, lever > 0.0 ? 2.0 * half * reach / lever : half};
-}
-
 std::string seconds_text(double s) {
     return std::to_string(s) + " s";
 }
 
 } // namespace
-
-void HandHook::before_step(const Session& session) noexcept {
-    const auto newest = targets_.try_read();
-    if (newest.is_new)
-        device_.set_target({device_.time(), session.handle_for(newest.value.grip)});
-}
 
 void HapticWorld::configure(const Dictionary& settings, Problems& problems) {
     if (running()) {
@@ -95,7 +71,7 @@ void HapticWorld::set_device(const Dictionary& device, Problems& problems) {
         problems.add("The world runs: stop it before the device changes.");
         return;
     }
-    const SimulatedPantographOptions read = read_simulated_pantograph(device, problems);
+    const DeviceOptions read = read_device(device, problems);
     if (problems.none())
         device_options_ = read;
 }
@@ -140,6 +116,8 @@ void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const doub
     plan_ = n.plan;
     runner_->publish();
     ++ve_ticks_;
+    for (const std::string& message : device_->take_messages())
+        problems.add(message);
 }
 
 void HapticWorld::start(bool realtime, double record_seconds, Problems& problems) {
@@ -153,21 +131,25 @@ void HapticWorld::start(bool realtime, double record_seconds, Problems& problems
         problems.add("A recording of " + seconds_text(record_seconds) + " is not possible; at most 3600 s.");
     if (!problems.none())
         return;
-    device_ = std::make_unique<SimulatedPantograph>(*device_options_);
-    hand_ = std::make_unique<HandHook>(*device_);
+    DeviceOptions device = *device_options_;
+    // the thread that writes to a device is as urgent as the loop
+    if (auto* hid = std::get_if<HidPantographOptions>(&device))
+        hid->priority = std::clamp(settings_.loop.priority, 0, k_max_priority);
+    device_ = WorldDevice::make(device, realtime, problems);
+    if (device_ == nullptr)
+        return;
     Model model;
     model.tool = *tool_;
     model.settings = settings_.model;
     SessionSettings session = settings_.session;
-    session.device_delay = device_options_->command_delay;
-    session.reading_error = reading_error(*device_options_);
+    session.device_delay = device_->delay(session);
+    session.reading_error = device_->reading_error();
     OutputGate gate(settings_.safety, device_->kinematics());
-    gate.set_homed(true); // a simulated device knows its zero
-    auto made =
-        std::make_unique<Session>(session, model, gate, *device_, node_to_center(tool_start_, tool_center_));
+    auto made = std::make_unique<Session>(session, model, gate, device_->port(),
+                                          node_to_center(tool_start_, tool_center_));
     gains_ = made->gains();
     report_ = made->report();
-    runner_ = std::make_unique<HapticRunner>(std::move(made), hand_.get());
+    runner_ = std::make_unique<HapticRunner>(std::move(made), device_->hook());
     runner_->record(record_seconds);
     realtime_ = realtime;
     sequence_ = 0;
@@ -202,7 +184,6 @@ void HapticWorld::stop() {
         refresh();
     }
     runner_.reset();
-    hand_.reset();
     device_.reset();
 }
 
@@ -307,6 +288,9 @@ Dictionary HapticWorld::statistics() const {
     d["plan"] = plan();
     d["coupling_stiffness_n_m"] = gains_.stiffness.x();
     d["coupling_damping_n_s_m"] = gains_.damping.x();
+    const Dictionary device = device_->statistics();
+    if (!device.is_empty())
+        d["device"] = device;
     return d;
 }
 
@@ -327,12 +311,19 @@ Array HapticWorld::plan() const {
 }
 
 void HapticWorld::aim(const Pose& grip) {
-    if (hand_ != nullptr && grip.allFinite())
-        hand_->aim(grip);
+    if (device_ != nullptr && grip.allFinite())
+        device_->aim(grip);
 }
 
 bool HapticWorld::send(RunnerCommand command) {
     return running() && runner_->try_send(command);
+}
+
+void HapticWorld::home_device(Problems& problems) {
+    if (!running())
+        problems.add("The world does not run, so its device cannot be homed. Start it first.");
+    else
+        device_->home(problems);
 }
 
 void HapticWorld::save_recording(const std::string& path, Problems& problems) {

@@ -1,6 +1,8 @@
 #include <haptics/classes/world_settings.hpp>
 #include <haptics/core/local_model/validate.hpp>
 
+#include <cmath>
+
 namespace haptics {
 
 using namespace godot;
@@ -75,6 +77,58 @@ SimulatedHandOptions read_hand(const Dictionary& from, Problems& problems) {
     return h;
 }
 
+SimulatedPantographOptions read_simulated_pantograph(const Dictionary& from, Problems& problems) {
+    SimulatedPantographOptions o;
+    DictionaryReader r(from, "device.", problems);
+    r.text("kind", "");
+    o.geometry = read_geometry(r.text("geometry", ""), problems);
+    o.inertia_model = r.choice("inertia_model", o.inertia_model,
+                               {{"constant", InertiaModel::constant}, {"linkage", InertiaModel::linkage}});
+    o.mass = r.number("mass", o.mass);
+    o.inertia = r.number("inertia", o.inertia);
+    o.viscous_friction = r.number("viscous_friction", o.viscous_friction);
+    o.rotation_viscous_friction = r.number("rotation_viscous_friction", o.rotation_viscous_friction);
+    o.coulomb_friction = r.number("coulomb_friction", o.coulomb_friction);
+    o.rotation_coulomb_friction = r.number("rotation_coulomb_friction", o.rotation_coulomb_friction);
+    o.encoder_model = r.choice(
+        "encoder_model", o.encoder_model,
+        {{"exact", EncoderModel::exact}, {"handle", EncoderModel::handle}, {"joint", EncoderModel::joint}});
+    o.encoder_resolution = r.vec3("encoder_resolution", o.encoder_resolution);
+    o.command_delay = r.number("command_delay", o.command_delay);
+    o.command_delay_steps = static_cast<int>(r.number("command_delay_steps", o.command_delay_steps));
+    o.reading_delay_steps = static_cast<int>(r.number("reading_delay_steps", o.reading_delay_steps));
+    o.limit_motors = r.flag("limit_motors", o.limit_motors);
+    o.bounded = r.flag("bounded", o.bounded);
+    o.measures_force = r.flag("measures_force", o.measures_force);
+    o.measures_velocity = r.flag("measures_velocity", o.measures_velocity);
+    o.noise = r.vec3("noise", o.noise);
+    o.seed = static_cast<std::uint64_t>(std::max(0.0, r.number("seed", 1.0)));
+    o.sub_step = r.number("sub_step", o.sub_step);
+    o.hand = read_hand(r.dictionary("hand"), problems);
+    r.finish();
+    problems.add(validate(o));
+    return o;
+}
+
+HidPantographOptions read_hid_pantograph(const Dictionary& from, Problems& problems) {
+    HidPantographOptions o;
+    DictionaryReader r(from, "device.", problems);
+    r.text("kind", "");
+    o.geometry = read_geometry(r.text("geometry", ""), problems);
+    const auto id = [&r](const char* key, int fallback) {
+        const double given = r.number(key, fallback);
+        return std::abs(given) < 1e9 ? static_cast<int>(given) : 0;
+    };
+    o.vendor = id("vendor_id", o.vendor);
+    o.product = id("product_id", o.product);
+    o.serial = r.text("serial", o.serial);
+    o.residual_limit = r.number("encoder_tolerance", o.residual_limit);
+    o.stream.max_joint_speed = r.number("max_joint_speed", o.stream.max_joint_speed);
+    r.finish();
+    problems.add(validate(o));
+    return o;
+}
+
 } // namespace
 
 WorldSettings read_world_settings(const Dictionary& from, Problems& problems) {
@@ -127,37 +181,15 @@ Surface read_surface(const Dictionary& from, const std::string& place, const Sur
     return s;
 }
 
-SimulatedPantographOptions read_simulated_pantograph(const Dictionary& from, Problems& problems) {
-    SimulatedPantographOptions o;
-    DictionaryReader r(from, "device.", problems);
-    r.text("kind", "");
-    o.geometry = read_geometry(r.text("geometry", ""), problems);
-    o.inertia_model = r.choice("inertia_model", o.inertia_model,
-                               {{"constant", InertiaModel::constant}, {"linkage", InertiaModel::linkage}});
-    o.mass = r.number("mass", o.mass);
-    o.inertia = r.number("inertia", o.inertia);
-    o.viscous_friction = r.number("viscous_friction", o.viscous_friction);
-    o.rotation_viscous_friction = r.number("rotation_viscous_friction", o.rotation_viscous_friction);
-    o.coulomb_friction = r.number("coulomb_friction", o.coulomb_friction);
-    o.rotation_coulomb_friction = r.number("rotation_coulomb_friction", o.rotation_coulomb_friction);
-    o.encoder_model = r.choice(
-        "encoder_model", o.encoder_model,
-        {{"exact", EncoderModel::exact}, {"handle", EncoderModel::handle}, {"joint", EncoderModel::joint}});
-    o.encoder_resolution = r.vec3("encoder_resolution", o.encoder_resolution);
-    o.command_delay = r.number("command_delay", o.command_delay);
-    o.command_delay_steps = static_cast<int>(r.number("command_delay_steps", o.command_delay_steps));
-    o.reading_delay_steps = static_cast<int>(r.number("reading_delay_steps", o.reading_delay_steps));
-    o.limit_motors = r.flag("limit_motors", o.limit_motors);
-    o.bounded = r.flag("bounded", o.bounded);
-    o.measures_force = r.flag("measures_force", o.measures_force);
-    o.measures_velocity = r.flag("measures_velocity", o.measures_velocity);
-    o.noise = r.vec3("noise", o.noise);
-    o.seed = static_cast<std::uint64_t>(std::max(0.0, r.number("seed", 1.0)));
-    o.sub_step = r.number("sub_step", o.sub_step);
-    o.hand = read_hand(r.dictionary("hand"), problems);
-    r.finish();
-    problems.add(validate(o));
-    return o;
+DeviceOptions read_device(const Dictionary& from, Problems& problems) {
+    Problems ignored;
+    const std::string kind = DictionaryReader(from, "", ignored).text("kind", "");
+    if (kind == "hid_pantograph")
+        return read_hid_pantograph(from, problems);
+    if (!kind.empty() && kind != "simulated_pantograph")
+        problems.add("device.kind is \"" + kind +
+                     "\", must be one of: simulated_pantograph, hid_pantograph.");
+    return read_simulated_pantograph(from, problems);
 }
 
 } // namespace haptics

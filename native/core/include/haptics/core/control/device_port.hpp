@@ -1,6 +1,7 @@
 #pragma once
 /// What the haptic step needs of a device, real or simulated.
 
+#include <haptics/core/safety/fault.hpp>
 #include <haptics/core/types.hpp>
 
 #include <cstdint>
@@ -21,6 +22,16 @@ struct DeviceReading {
     std::uint32_t buttons{0};
     /// Grows by one with every new sample; unchanged means that the sample is the last one again.
     std::uint64_t sequence{0};
+    /// Time between this sample and the one before on the device's clock, s; 0 when the device has no clock,
+    /// and the steps of the loop count instead.
+    double interval{0.0};
+    /// How old the sample is beyond the delay that every sample has, s: the handle has moved on by velocity
+    /// times age since. 0 when unknown.
+    double age{0.0};
+    /// The device knows its zero; while it does not, the pose means nothing and no force may come.
+    bool homed{true};
+    /// What the device or its driver found wrong in this step.
+    Fault faults{Fault::none};
 };
 
 /// A device seen from the haptic loop. Neither call allocates, locks, logs or throws; neither blocks longer

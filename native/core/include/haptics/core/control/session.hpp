@@ -28,6 +28,8 @@ struct SessionSettings {
     double device_delay{0.0};
     /// Largest reading error per coordinate (half an encoder step), m, m, rad; used to estimate velocity.
     Vec3 reading_error{5e-6, 5e-6, 5e-5};
+    /// The output faults when the device gave no new sample for so long, s, 0.002 to 1.
+    double device_patience{0.02};
     /// Longest window of the velocity estimate, samples, 1 to 63: a longer one is quieter and lags more.
     int velocity_window{2};
     /// Arm by itself as soon as the handle rests in free space. Faults still need a re-arm.
@@ -66,7 +68,8 @@ class Session {
     /// The hand takes hold elsewhere: at once when nothing is held, else after letting go. A link that the
     /// tool does not have is ignored.
     void grab(const Grip& grip);
-    /// Asks the gate to arm; the answer is in the next report's `armed` and in `arm_result()`.
+    /// Asks the gate to arm, and to forget the faults latched now; the answer is in the next report's `armed`
+    /// and in `arm_result()`.
     void arm();
     void disarm();
     /// Writes zero force to the device and disarms: the last thing before the loop ends.
@@ -98,6 +101,9 @@ class Session {
     void grasp();
     void freeze_offset();
     void read_device();
+    void follow_handle();
+    [[nodiscard]] Fault device_faults() const;
+    void try_to_arm(Fault device);
     void run_model();
     [[nodiscard]] Wrench command();
     void write_report(const GateOutput& gate, const Wrench& command);
@@ -136,6 +142,14 @@ class Session {
     bool fresh_{false};
     bool missing_{false};
     bool arm_wanted_{false};
+    /// Faults that the last arm() was told to forget.
+    Fault forgive_{Fault::none};
+    /// Time since the last new sample as the loop counts it, and age of that sample, s.
+    double silent_for_{0.0};
+    double age_{0.0};
+    /// Sum and number of the forces since the last new sample.
+    Wrench force_sum_{0.0, 0.0, 0.0};
+    double force_count_{0.0};
 };
 
 } // namespace haptics

@@ -28,6 +28,12 @@ enum class Fault : std::uint32_t {
     release_the_stop = 1U << 8U,
     /// The passivity check found the controller to create energy.
     lower_the_stiffness = 1U << 9U,
+    /// An encoder jumped farther between two samples than a joint can turn, or reported an error of its own.
+    check_the_encoder_wiring = 1U << 10U,
+    /// The device let its motors go because no command reached it in time.
+    give_the_loop_more_time = 1U << 11U,
+    /// The device reports a fault of its own: a motor driver gave up, or it is too warm.
+    let_the_device_recover = 1U << 12U,
 };
 
 /// Union of causes.
@@ -44,7 +50,7 @@ constexpr bool has(Fault set, Fault bits) {
 }
 
 /// Number of fault bits.
-inline constexpr int k_fault_count = 10;
+inline constexpr int k_fault_count = 13;
 /// Cause and remedy of one bit (0 to k_fault_count - 1) as a sentence; static storage. Empty for any other
 /// bit.
 const char* describe_fault(int bit);

@@ -91,6 +91,7 @@ class HapticServer : public godot::Object {
     void world_arm(int64_t world, bool armed);
     void world_set_paused(int64_t world, bool paused);
     void world_press_stop(int64_t world);
+    godot::PackedStringArray world_home_device(int64_t world);
     godot::PackedStringArray world_save_recording(int64_t world, const godot::String& path);
 
   protected:

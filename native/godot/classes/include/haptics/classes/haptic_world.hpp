@@ -2,6 +2,7 @@
 /// One haptic world of the server: settings, bodies, device and the runner. Main thread only.
 
 #include <haptics/classes/body_registry.hpp>
+#include <haptics/classes/world_device.hpp>
 #include <haptics/classes/world_settings.hpp>
 #include <haptics/realtime/haptic_runner.hpp>
 #include <haptics/realtime/host_steal.hpp>
@@ -15,25 +16,6 @@
 #include <string>
 
 namespace haptics {
-
-/// Gives a simulated hand its targets on the loop thread.
-class HandHook final : public StepHook {
-  public:
-    explicit HandHook(SimulatedPantograph& device)
-        : device_(device) {}
-    /// Main thread: where the grip should be (scene frame).
-    void aim(const Pose& grip) noexcept { targets_.try_write({next_++, grip}); }
-    void before_step(const Session& session) noexcept override;
-
-  private:
-    struct Target {
-        std::uint64_t number{0};
-        Pose grip{0.0, 0.0, 0.0};
-    };
-    SimulatedPantograph& device_;
-    LatestValue<Target> targets_;
-    std::uint64_t next_{1};
-};
 
 /// What the scene reads back about a movable body.
 struct GivenImpulse {
@@ -70,6 +52,8 @@ class HapticWorld {
     [[nodiscard]] godot::Array plan() const;
     void aim(const Pose& grip);
     bool send(RunnerCommand command);
+    /// The device's handle is in its home pose now. Waits for a real device's answer, at most a second.
+    void home_device(Problems& problems);
     void save_recording(const std::string& path, Problems& problems);
     /// Where the simulated hand wants the grip (scene frame), for a ghost cursor.
     [[nodiscard]] const Vec2& tool_center() const { return tool_center_; }
@@ -83,10 +67,9 @@ class HapticWorld {
     std::optional<ToolModel> tool_;
     Vec2 tool_center_{0.0, 0.0};
     Pose tool_start_{0.0, 0.0, 0.0};
-    std::optional<SimulatedPantographOptions> device_options_;
+    std::optional<DeviceOptions> device_options_;
     BodyRegistry bodies_;
-    std::unique_ptr<SimulatedPantograph> device_;
-    std::unique_ptr<HandHook> hand_;
+    std::unique_ptr<WorldDevice> device_;
     std::unique_ptr<HapticRunner> runner_;
     HostSteal steal_;
     TickClock ticks_;

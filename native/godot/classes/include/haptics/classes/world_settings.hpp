@@ -4,7 +4,10 @@
 #include <haptics/classes/dictionary_reader.hpp>
 #include <haptics/core/control/session.hpp>
 #include <haptics/core/local_model/model.hpp>
+#include <haptics/devices/hid/hid_pantograph.hpp>
 #include <haptics/devices/simulated/simulated_pantograph.hpp>
+
+#include <variant>
 
 namespace haptics {
 
@@ -30,7 +33,10 @@ WorldSettings read_world_settings(const godot::Dictionary& from, Problems& probl
 Surface read_surface(const godot::Dictionary& from, const std::string& place, const Surface& fallback,
                      Problems& problems);
 
-/// A simulated pantograph and its hand.
-SimulatedPantographOptions read_simulated_pantograph(const godot::Dictionary& from, Problems& problems);
+/// A device of any kind.
+using DeviceOptions = std::variant<SimulatedPantographOptions, HidPantographOptions>;
+
+/// The device that the key `kind` names: simulated_pantograph (the default) or hid_pantograph.
+DeviceOptions read_device(const godot::Dictionary& from, Problems& problems);
 
 } // namespace haptics

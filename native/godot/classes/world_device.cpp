@@ -1,0 +1,141 @@
+#include <haptics/classes/world_device.hpp>
+
+#include <numbers>
+
+namespace haptics {
+
+using namespace godot;
+
+namespace {
+
+// gives a simulated hand its targets on the loop thread
+class HandHook final : public StepHook {
+  public:
+    explicit HandHook(SimulatedPantograph& device)
+        : device_(device) {}
+    void aim(const Pose& grip) noexcept { targets_.try_write({next_++, grip}); }
+    void before_step(const Session& session) noexcept override {
+        const auto newest = targets_.try_read();
+        if (newest.is_new)
+            device_.set_target({device_.time(), session.handle_for(newest.value.grip)});
+    }
+
+  private:
+    struct Target {
+        std::uint64_t number{0};
+        Pose grip{0.0, 0.0, 0.0};
+    };
+    SimulatedPantograph& device_;
+    LatestValue<Target> targets_;
+    std::uint64_t next_{1};
+};
+
+class SimulatedDevice final : public WorldDevice {
+  public:
+    explicit SimulatedDevice(const SimulatedPantographOptions& options)
+        : options_(options)
+        , device_(options)
+        , hook_(device_) {}
+
+    DevicePort& port() override { return device_; }
+    [[nodiscard]] const PantographKinematics& kinematics() const override { return device_.kinematics(); }
+    [[nodiscard]] double delay(const SessionSettings& /*session*/) const override {
+        return options_.command_delay;
+    }
+    [[nodiscard]] Vec3 reading_error() const override {
+        switch (options_.encoder_model) {
+        case EncoderModel::exact:
+            return {1e-9, 1e-9, 1e-8};
+        case EncoderModel::handle:
+            return 0.5 * options_.encoder_resolution;
+        case EncoderModel::joint:
+            break;
+        }
+        // half a count at the motor axis, seen at the end of a stretched arm
+        const FiveBarGeometry& bar = options_.geometry.bar[0];
+        const double half = std::numbers::pi / options_.geometry.motor.counts_per_revolution;
+        const double reach = bar.proximal_length[0] + bar.distal_length[0];
+        const double lever = (options_.geometry.attachment[0] - options_.geometry.attachment[1]).norm();
+        return {half * reach, half * reach, lever > 0.0 ? 2.0 * half * reach / lever : half};
+    }
+    StepHook* hook() override { return &hook_; }
+    void aim(const Pose& grip) override { hook_.aim(grip); }
+
+  private:
+    SimulatedPantographOptions options_;
+    SimulatedPantograph device_;
+    HandHook hook_;
+};
+
+class HidDevice final : public WorldDevice {
+  public:
+    explicit HidDevice(std::unique_ptr<HidPantograph> device)
+        : device_(std::move(device)) {}
+
+    DevicePort& port() override { return *device_; }
+    [[nodiscard]] const PantographKinematics& kinematics() const override { return device_->kinematics(); }
+    [[nodiscard]] Vec3 reading_error() const override { return device_->reading_error(); }
+    [[nodiscard]] double delay(const SessionSettings& session) const override {
+        return device_->delay(session.step, session.velocity_window);
+    }
+    void home(Problems& problems) override {
+        const std::string problem = device_->home_here();
+        if (!problem.empty())
+            problems.add(problem);
+    }
+    std::vector<std::string> take_messages() override { return device_->take_messages(); }
+    [[nodiscard]] Dictionary statistics() const override {
+        const HidCounts c = device_->published_counts();
+        const HidIdentity& id = device_->identity();
+        Dictionary d;
+        const auto count = [&d](const char* name, std::uint64_t value) {
+            d[name] = static_cast<int64_t>(value);
+        };
+        d["name"] = String(device_->name());
+        d["serial"] = String(id.serial.data());
+        d["firmware"] = String(std::to_string(id.major) + "." + std::to_string(id.minor));
+        d["connected"] = device_->is_connected();
+        count("connections", device_->connections());
+        count("reports_used", c.accepted);
+        count("reports_superseded", c.superseded);
+        count("reports_wrong_size", c.wrong_size);
+        count("reports_corrupt", c.corrupt);
+        count("reports_wrong_version", c.wrong_version);
+        count("reports_repeated", c.repeated);
+        count("reports_out_of_order", c.out_of_order);
+        count("reports_late", c.late);
+        count("reports_jumped", c.jumped);
+        count("reports_without_pose", c.no_pose);
+        count("reports_lost", c.lost);
+        count("commands_sent", device_->commands_sent());
+        count("commands_overtaken", device_->commands_overtaken());
+        return d;
+    }
+
+  private:
+    std::unique_ptr<HidPantograph> device_;
+};
+
+} // namespace
+
+std::unique_ptr<WorldDevice> WorldDevice::make(const DeviceOptions& options, bool realtime,
+                                               Problems& problems) {
+    if (const auto* simulated = std::get_if<SimulatedPantographOptions>(&options))
+        return std::make_unique<SimulatedDevice>(*simulated);
+    if (!realtime) {
+        problems.add(
+            "A HapticHidPantograph needs the mode REALTIME: it goes on in its own time while a lock-step "
+            "loop waits. Set the world's mode, or use a HapticSimulatedPantograph.");
+        return nullptr;
+    }
+    std::string error;
+    std::unique_ptr<HidPantograph> device =
+        HidPantograph::open(std::get<HidPantographOptions>(options), error);
+    if (device == nullptr) {
+        problems.add(error);
+        return nullptr;
+    }
+    return std::make_unique<HidDevice>(std::move(device));
+}
+
+} // namespace haptics
