@@ -16,8 +16,7 @@ const _GEOMETRIES: PackedStringArray = [
 ]
 
 ## Its linkage: lengths, masses and modes. The device has to have as many motors.
-@export
-var geometry: HapticSimulatedPantograph.Geometry = (
+@export var geometry: HapticSimulatedPantograph.Geometry = (
 	HapticSimulatedPantograph.Geometry.UBC_TWIN_PANTOGRAPH
 ):
 	set(value):
@@ -41,8 +40,7 @@ var geometry: HapticSimulatedPantograph.Geometry = (
 
 @export_group("Watch")
 ## Most that four encoders may disagree by before the output faults, rad, 0.0001 to 1.
-@export_range(0.0001, 0.1, 0.0001, "or_greater", "suffix:rad")
-var encoder_tolerance: float = 0.005:
+@export_range(0.0001, 0.1, 0.0001, "or_greater", "suffix:rad") var encoder_tolerance: float = 0.005:
 	set(value):
 		encoder_tolerance = value
 		emit_changed()
