@@ -4,9 +4,9 @@ class_name HapticHidPantograph
 extends HapticDevice
 ## A planar pantograph on USB that speaks the open HID protocol of docs/hid-protocol.md.
 ##
-## It is opened when the world starts, in real time only; docs/devices.md says what the machine needs
-## (hidapi, and a udev rule). Offsets, gears, torque limits and home pose come from the device itself.
-## A device with relative encoders needs [method HapticWorld2D.home_device] before any force.
+## It is opened when the world starts, in real time only; docs/devices.md says what the machine
+## needs (hidapi, and a udev rule). Offsets, gears, torque limits and home pose come from the device
+## itself. One with relative encoders needs [method HapticWorld2D.home_device] before any force.
 
 # what the safety limits count with: handle, links and a light grip
 const _MOVING_MASS := 0.5

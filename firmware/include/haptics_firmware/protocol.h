@@ -63,10 +63,8 @@
 #define HAPTICS_OUTPUT_AT_VERSION 1u
 #define HAPTICS_OUTPUT_AT_FLAGS 2u    /* u16, HAPTICS_FLAG_* */
 #define HAPTICS_OUTPUT_AT_SEQUENCE 4u /* u32, one more in each command */
-#define HAPTICS_OUTPUT_AT_TORQUE                                                                             \
-    8u                              /* 4 x i32, uN m at the motor shafts, in the joint's positive direction  \
-                                     */
-#define HAPTICS_OUTPUT_AT_INPUT 24u /* u32, sequence of the input report this answers */
+#define HAPTICS_OUTPUT_AT_TORQUE 8u   /* 4 x i32, uN m at the motor shafts, counter-clockwise of the joint */
+#define HAPTICS_OUTPUT_AT_INPUT 24u   /* u32, sequence of the input report this answers */
 #define HAPTICS_OUTPUT_AT_CRC 28u
 #define HAPTICS_OUTPUT_SIZE 32u
 
