@@ -231,8 +231,8 @@ void assemble(const Model& model, Data& data, double dt) {
     const bool walls_move = data.plan.runs(Stage::moving_walls);
     s.points = 0;
     s.patches = 0;
-    s.normal_rows.setZero(2 * data.patches.count + joints, n);
-    s.tangent_rows.setZero(data.patches.count + 2 * joints, n);
+    s.normal_rows.set_zero(2 * data.patches.count + joints, n);
+    s.tangent_rows.set_zero(data.patches.count + 2 * joints, n);
     for (int i = 0; i < data.patches.count; ++i) {
         const Patch& p = data.patches.patch[static_cast<std::size_t>(i)];
         const int row_a = lone ? 0 : first_row(data, p.body_a);

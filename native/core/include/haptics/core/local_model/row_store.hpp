@@ -16,7 +16,7 @@ class RowStore {
     using Row = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, k_max_collision_freedoms>;
 
     /// `rows` (at most MaxRows) rows of `columns` zeros.
-    void setZero(int rows, int columns) {
+    void set_zero(int rows, int columns) {
         columns_ = columns;
         std::fill_n(number_.begin(), static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns), 0.0);
     }
