@@ -18,7 +18,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 # gcc's own flags, which clang does not know
-GCC_ONLY = {"-fno-gnu-unique", "-Wduplicated-cond", "-Wlogical-op"}
+GCC_ONLY = {"-fno-gnu-unique", "-Wduplicated-cond", "-Wlogical-op", "-Winvalid-pch"}
 
 
 def headers_by_object(build: Path) -> dict[str, list[str]]:
@@ -50,6 +50,10 @@ def prepare(build: Path, out: Path) -> list[tuple[Path, str]]:
         if source.is_relative_to(ROOT / "native/tests") or source.is_relative_to(ROOT / "native/bench"):
             continue
         words = [word for word in entry["command"].split() if word not in GCC_ONLY]
+        # gcc's precompiled headers; without them a missing include shows here
+        while "-include" in words and words[words.index("-include") + 1].endswith("cmake_pch.hxx"):
+            at = words.index("-include")
+            del words[at : at + 2]
         entry["command"] = " ".join(words)
         kept.append(entry)
         digest = hashlib.sha256(rules + entry["command"].encode())

@@ -3,6 +3,7 @@
 ///     HAPTICS_COLLISION_TABLE=build/collision_table.md haptics_tests -tc='collision methods side by side*'
 
 #include <haptics/shared/collision_scenes.hpp>
+#include <haptics/shared/dense_algebra.hpp>
 
 #include <doctest/doctest.h>
 
@@ -52,7 +53,7 @@ bool kills_sliding(const Bench& b) {
     const Eigen::MatrixXd g = rows * w * rows.transpose();
     // the D-orthogonal part outside the rows
     const auto outside = [&](const FreedomVector& velocity) {
-        const Eigen::VectorXd inside = g.completeOrthogonalDecomposition().solve(rows * velocity);
+        const Eigen::VectorXd inside = shared::least_squares(g, rows * velocity);
         return FreedomVector(velocity - w * rows.transpose() * inside);
     };
     const double before = kinetic(b.scene.tool, outside(b.scene.problem.velocity));

@@ -1,4 +1,5 @@
 #include <haptics/core/pantograph/torque_map.hpp>
+#include <haptics/shared/dense_algebra.hpp>
 
 #include <doctest/doctest.h>
 
@@ -20,8 +21,7 @@ Wrench random_wrench(Random& random, double force, double torque) {
 
 // null vector of rates^T by an orthogonal decomposition: not how the code under test finds it
 Eigen::Vector4d null_vector(const JointJacobian& rates) {
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rates.transpose(), Eigen::ComputeFullV);
-    return svd.matrixV().col(3);
+    return shared::kernel(rates.transpose()).col(0);
 }
 
 } // namespace
@@ -90,7 +90,7 @@ TEST_SUITE("torque map") {
             // the null direction
             const Eigen::Vector4d along = null_vector(state.rates);
             const Eigen::MatrixXd map = state.rates.transpose();
-            const double size = map.completeOrthogonalDecomposition().solve(direction).norm();
+            const double size = shared::least_squares(map, direction).norm();
             const double step = 1.0e-3;
             const double bound = 2.0 * step * size * (1.0 + 1.0 / along.cwiseAbs().minCoeff());
             JointVector last = JointVector::Zero();

@@ -4,6 +4,7 @@
 /// densely here, apart from core/dynamics, so that the tests do not lean on what they share a library with.
 
 #include <haptics/core/contact/collision.hpp>
+#include <haptics/shared/dense_algebra.hpp>
 
 #include <cmath>
 #include <cstdint>
@@ -147,8 +148,8 @@ inline void random_scene(Dice& dice, const CollisionMix& mix, CollisionScene& sc
     const int n = scene.tool.freedoms();
     const int m = dice.integer(mix.least_contacts, mix.most_contacts);
     problem.resize(n, m);
-    const Eigen::MatrixXd inverse = Eigen::MatrixXd(scene.tool.mass).inverse();
-    problem.inverse_mass = 0.5 * (inverse + inverse.transpose());
+    const Eigen::MatrixXd mobility = inverse(scene.tool.mass);
+    problem.inverse_mass = 0.5 * (mobility + mobility.transpose());
     const double size = rigid ? 0.5 : 3.0;
     for (int k = 0; k < n; ++k)
         problem.velocity[k] = dice.uniform(-size, size);
