@@ -42,19 +42,6 @@ double tangent_rate(const ContactSystem& s, int patch) {
     return s.tangent_rows.row(patch).dot(s.velocity) - s.row[static_cast<std::size_t>(patch)].drive;
 }
 
-// coupling force for the end velocity in the system
-Wrench coupling_force(const Data& data, const HandInput& hand, double dt, double left) {
-    const ContactSystem& s = data.system;
-    const Pose target = hand.target - left * hand.target_velocity;
-    const Vec3 velocity = s.grip * s.velocity.head(s.tool_freedoms);
-    const Vec3 distance = target - grip_pose(data.grip, data.pose) - dt * velocity;
-    Wrench force =
-        hand.stiffness.cwiseProduct(distance) + hand.damping.cwiseProduct(hand.target_velocity - velocity);
-    if (!data.grip.pose)
-        force.z() = 0.0;
-    return force;
-}
-
 template <int N>
 bool solve_primal(const Model& model, Data& data, const HandInput& hand, double dt, double left,
                   Integrator integrator) {
@@ -95,110 +82,9 @@ void move_anchors(ContactSystem& s, double dt) {
     }
 }
 
-// counters of what the tool gave to a movable, and the work that the other side of a patch did
-void book_other_side(Data& data, int i, double dt, StepOutput& output) {
-    ContactSystem& s = data.system;
-    const PatchRow& t = s.row[static_cast<std::size_t>(i)];
-    const int n = s.tool_freedoms;
-    // force times the velocity of the other side, v_other = v_tool - gap rate
-    const auto work = [&](const auto& row, double force, double drive) {
-        output.source_work +=
-            dt * force * (row.head(n).dot(s.velocity.head(n)) - row.dot(s.velocity) + drive);
-    };
-    MovableState* m = t.movable < 0 ? nullptr : &data.movable[static_cast<std::size_t>(t.movable)];
-    const auto give = [&](const auto& row, double force) {
-        if (m != nullptr && m->row >= 0)
-            m->belief.given += dt * force * row.template segment<3>(m->row).transpose();
-    };
-    work(s.tangent_rows.row(i), t.force, t.drive);
-    give(s.tangent_rows.row(i), t.force);
-    for (int k = 0; k < t.point_count; ++k) {
-        const int point = t.first_point + k;
-        const PointRow& p = s.point[static_cast<std::size_t>(point)];
-        work(s.normal_rows.row(point), p.force, p.drive);
-        give(s.normal_rows.row(point), p.force);
-    }
-    if (m != nullptr && m->row >= 0)
-        m->given_step = data.step;
-}
-
-// what the sub-step did to the tool and to the movables beside it
-void book(const Model& model, Data& data, const Wrench& hand_force, double share, double dt,
-          StepOutput& output) {
-    ContactSystem& s = data.system;
-    const int n = s.tool_freedoms;
-    const Vec2 grip = grip_pose(data.grip, data.pose).head<2>();
-    Wrench contact = Wrench::Zero();
-    s.tool_force = s.external.head(n);
-    for (int i = 0; i < s.patches; ++i) {
-        const PatchRow& t = s.row[static_cast<std::size_t>(i)];
-        double pressing = 0.0;
-        Vec2 moment{0.0, 0.0};
-        const Patch* patch = t.patch < 0 ? nullptr : &data.patches.patch[static_cast<std::size_t>(t.patch)];
-        if (patch != nullptr && patch->body_a >= data.tool.body_count)
-            continue;
-        for (int k = 0; k < t.point_count; ++k) {
-            const int point = t.first_point + k;
-            const PointRow& p = s.point[static_cast<std::size_t>(point)];
-            if (p.force == 0.0)
-                continue;
-            pressing += p.force;
-            s.tool_force += p.force * s.normal_rows.row(point).head(n).transpose();
-            if (patch != nullptr)
-                moment += p.force * patch->point[static_cast<std::size_t>(p.slot)].position;
-        }
-        if (t.force != 0.0)
-            s.tool_force += t.force * s.tangent_rows.row(i).head(n).transpose();
-        if (patch == nullptr || (pressing == 0.0 && t.force == 0.0))
-            continue;
-        const Vec2 force = pressing * patch->normal + t.force * perpendicular(patch->normal);
-        double torque = cross(moment - pressing * grip, patch->normal);
-        if (t.force != 0.0) {
-            Vec2 middle{0.0, 0.0};
-            for (int k = 0; k < patch->point_count; ++k)
-                middle += patch->point[static_cast<std::size_t>(k)].weight *
-                          patch->point[static_cast<std::size_t>(k)].position;
-            torque += t.force * cross(middle - grip, perpendicular(patch->normal));
-        }
-        contact += Wrench(force.x(), force.y(), torque);
-        const bool moves =
-            t.movable >= 0 || t.drive != 0.0 ||
-            (t.point_count > 0 && s.point[static_cast<std::size_t>(t.first_point)].drive != 0.0);
-        if (moves)
-            book_other_side(data, i, dt, output);
-    }
-    if (s.has_joint_springs)
-        for (int i = 0; i < n; ++i) {
-            const Vec3 spring = joint_spring(model, data, i);
-            const double rate = s.velocity(i);
-            s.tool_force(i) -= spring.y() * (spring.x() + dt * rate) + spring.z() * rate;
-        }
-    s.force_work += dt * (s.tool_force - s.external.head(n) + s.tool_weight).dot(s.velocity.head(n));
-    output.source_work +=
-        dt * (s.tool_weight.dot(s.velocity.head(n)) + hand_force.dot(s.grip * s.velocity.head(n)));
-    output.contact += share * contact;
-    output.environment += share * contact;
-    if (!model.tool.articulated) {
-        const Vec2 weight = s.external.head<2>();
-        const Vec2 arm = data.pose.head<2>() - grip;
-        output.environment += share * Wrench(weight.x(), weight.y(), cross(arm, weight));
-    }
-    output.grip_acceleration += share * tool_response(model, data, s.tool_force);
-    output.grip_bias += share * grip_bias(model, data);
-}
-
-// part of the coupling that takes effect: the gate's share, less what the device cannot answer
-double effective_share(const HandInput& hand, const Wrench& full) {
-    return std::min({hand.share, hand.max_force / std::max(full.head<2>().norm(), 1e-300),
-                     hand.max_torque / std::max(std::abs(full.z()), 1e-300)});
-}
-
-void add_coupling(const Data& data, const HandInput& hand, const HandInput& used, double dt, double left,
-                  double share, StepOutput& output) {
-    const Wrench full = coupling_force(data, hand, dt, left);
-    output.full_coupling += share * full;
-    output.coupling += share * (used.stiffness.isZero(0.0) ? Wrench(used.force - hand.force)
-                                                           : coupling_force(data, used, dt, left));
+// the motion of a sub-step with the end velocity in the system
+Motion end_motion(const ContactSystem& s, double dt, double left) {
+    return {dt, left, s.velocity, dt * s.velocity};
 }
 
 } // namespace
@@ -207,46 +93,35 @@ void integrate(const Model& model, Data& data, const HandInput& hand, double dt,
                StepOutput& output) {
     ContactSystem& s = data.system;
     load_velocities(model, data);
-    HandInput used = hand;
-    used.stiffness *= hand.share;
-    used.damping *= hand.share;
+    HandInput used = at_share(hand);
+    const Integrator integrator = model.settings.integrator;
     const FreedomVector start = s.velocity;
-    bool settled = solve_step(model, data, used, dt, left, model.settings.integrator);
+    bool settled = solve_step(model, data, used, dt, left, integrator);
+    Motion motion = end_motion(s, dt, left);
     if (hand.held) {
-        // a coupling beyond what the device can answer becomes a constant force of the size it can
-        const Wrench full = coupling_force(data, hand, dt, left);
-        const double effective = effective_share(hand, full);
-        if (effective < hand.share) {
-            used.stiffness.setZero();
-            used.damping.setZero();
-            used.force = hand.force + effective * full;
+        if (hold_back(data, hand, motion, used)) {
             s.velocity = start;
-            settled = solve_step(model, data, used, dt, left, model.settings.integrator) && settled;
+            settled = solve_step(model, data, used, dt, left, integrator) && settled;
+            motion = end_motion(s, dt, left);
         }
-        add_coupling(data, hand, used, dt, left, share, output);
-        const Wrench applied = coupling_force(data, used, dt, left) + used.force;
+        const Wrench applied = book_coupling(data, hand, used, motion, share, output) + used.force;
         s.force_work += dt * applied.dot(s.grip * s.velocity.head(s.tool_freedoms));
     }
     output.fell_back = output.fell_back || !settled;
-    book(model, data, hand.held ? hand.force : Wrench(Wrench::Zero()), share, dt, output);
+    book(model, data, hand.held ? hand.force : Wrench(Wrench::Zero()), motion, share, output);
+    const int n = s.tool_freedoms;
+    s.force_work += dt * (s.tool_force - s.external.head(n) + s.tool_weight).dot(s.velocity.head(n));
     move_anchors(s, dt);
     for (int i = 0; i < s.points; ++i)
         s.point[static_cast<std::size_t>(i)].gap += dt * row_rate(s, i);
-    store_velocities(model, data);
-    move_tool(model, data, dt);
-    for (int i = 0; i < data.movable_count; ++i) {
-        MovableState& m = data.movable[static_cast<std::size_t>(i)];
-        if (m.row >= 0)
-            m.belief.pose += dt * m.belief.velocity;
-    }
-    move_neighbors(data, dt);
+    move_bodies(model, data, motion.stretch, dt);
 }
 
 void explicit_forces(const Model& model, Data& data, double dt, StepOutput& output) {
     const FreedomVector start = data.system.velocity;
     solve_step(model, data, HandInput{}, dt, 0.0, Integrator::semi_implicit);
     data.system.velocity = start;
-    book(model, data, Wrench::Zero(), 1.0, dt, output);
+    book(model, data, Wrench::Zero(), end_motion(data.system, dt, 0.0), 1.0, output);
     move_anchors(data.system, dt);
 }
 

@@ -15,12 +15,46 @@ void assemble(const Model& model, Data& data, double dt);
 void integrate(const Model& model, Data& data, const HandInput& hand, double dt, double left, double share,
                StepOutput& output);
 
+// How the system moved in a sub-step, as its springs and dampers saw it (book.cpp).
+struct Motion {
+    double dt;
+    // from where springs are taken to the end of the haptic step, s
+    double left;
+    // velocity, and displacement since the start, at which springs and dampers give the (mean) force
+    FreedomVector rate;
+    FreedomVector stretch;
+    // the work of movables has been integrated (PatchRow::movable_work)
+    bool integrated{false};
+};
+
+// The hand's input with the coupling at its share.
+HandInput at_share(const HandInput& hand);
+// A coupling beyond what the device can answer becomes a constant force of the size it can: true when it
+// does.
+bool hold_back(const Data& data, const HandInput& hand, const Motion& motion, HandInput& used);
+// Coupling force on the tool.
+Wrench coupling_force(const Data& data, const HandInput& hand, const Motion& motion);
+// Adds the coupling to the output; returns what the springs of `used` gave.
+Wrench book_coupling(const Data& data, const HandInput& hand, const HandInput& used, const Motion& motion,
+                     double share, StepOutput& output);
+// Adds contact forces, impulses on movables and work of the sub-step to the books, and forms `tool_force`.
+void book(const Model& model, Data& data, const Wrench& hand_force, const Motion& motion, double share,
+          StepOutput& output);
+// Velocities into Data, poses on by `moved`, everything else by `dt`.
+void move_bodies(const Model& model, Data& data, const FreedomVector& moved, double dt);
+
+// A step or the rest of one with the exact integrator (exact_step.cpp), collisions included.
+void step_exactly(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output);
+
 // Contact forces at the present state, without motion; friction anchors follow.
 void explicit_forces(const Model& model, Data& data, double dt, StepOutput& output);
 
 // Earliest time within `limit` at which a point that was apart closes faster than the collision speed;
 // negative when there is none.
 double next_collision(const Model& model, const Data& data, double limit);
+
+// A point is closed and closing faster than the collision speed.
+bool hits_now(const Model& model, const Data& data);
 
 // Resolves all points that are closed and approaching. False when there was nothing to resolve.
 bool collide(const Model& model, Data& data, StepOutput& output);
@@ -38,8 +72,8 @@ void load_velocities(const Model& model, Data& data);
 // The tool in configuration space (proxy.cpp). Velocities between Data and the first entries of the system:
 void load_tool(const Model& model, Data& data);
 void store_tool(const Model& model, Data& data);
-// motion of `dt` at the present velocity; a linkage's coordinates and links wait for the end of the step
-void move_tool(const Model& model, Data& data, double dt);
+// motion by `moved` (the first entries); a linkage's coordinates and links wait for the end of the step
+void move_tool(const Model& model, Data& data, const FreedomVector& moved);
 void begin_tool_step(const Model& model, Data& data);
 void end_tool_step(const Model& model, Data& data);
 // poses and velocities of links, held link and kinematics that follow from the state

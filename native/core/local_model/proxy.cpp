@@ -89,16 +89,17 @@ void store_tool(const Model& model, Data& data) {
         data.velocity = s.velocity.head<3>();
 }
 
-void move_tool(const Model& model, Data& data, double dt) {
+void move_tool(const Model& model, Data& data, const FreedomVector& moved) {
     if (!model.tool.articulated) {
-        data.pose += dt * data.velocity;
+        data.pose += moved.head<3>();
         place_tool(model, data);
         return;
     }
-    data.system.displacement += dt * data.linkage.velocity;
+    data.system.bias = moved.head(data.system.tool_freedoms);
+    data.system.displacement += data.system.bias;
     const LinkageModel& linkage = model.tool.linkage;
     const Vec2 center = link_center_pose(linkage, data.linkage, data.grip.link).head<2>();
-    data.pose += dt * apply_jacobian(linkage, data.linkage, data.grip.link, center, data.linkage.velocity);
+    data.pose += apply_jacobian(linkage, data.linkage, data.grip.link, center, data.system.bias);
 }
 
 void begin_tool_step(const Model& model, Data& data) {

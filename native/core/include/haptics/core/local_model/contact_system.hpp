@@ -47,6 +47,8 @@ struct PointRow {
     bool active{false};
     /// The point was apart when the step began, so that closing it is a hit.
     bool was_apart{false};
+    /// Impulse of `force` since the step began, N s (exact integrator).
+    double impulse{0.0};
 };
 
 /// One tangent row and the friction spring behind it: of a patch, or of a joint.
@@ -76,6 +78,10 @@ struct PatchRow {
     bool collided{false};
     /// Normal impulse of this step's collisions, N s.
     double impulse{0.0};
+    /// Impulse of `force` since the step began, N s (exact integrator).
+    double tangent_impulse{0.0};
+    /// Work that the movable on the other side did on the tool in the last sub-step, J (exact integrator).
+    double movable_work{0.0};
     /// Tool on one side and this movable on the other (index in Data::movable); -1 otherwise.
     std::int32_t movable{-1};
 };
