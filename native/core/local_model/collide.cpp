@@ -8,6 +8,7 @@
 
 #include <algorithm>
 
+#include "contact_rules.hpp"
 #include "internal.hpp"
 
 namespace haptics::local {
@@ -20,12 +21,19 @@ double rate(const ContactSystem& s, int point) {
     return s.normal_rows.row(point).dot(s.velocity) - s.point[static_cast<std::size_t>(point)].drive;
 }
 
-bool may_collide(const ContactSystem& s, const PointRow& p) {
-    const PatchRow& t = s.row[static_cast<std::size_t>(p.patch)];
-    return p.was_apart || (!t.continuing && !t.collided);
-}
-
 } // namespace
+
+bool hits_now(const Model& model, const Data& data) {
+    if (model.settings.contact_mode == ContactMode::penalty)
+        return false;
+    const ContactSystem& s = data.system;
+    for (int i = 0; i < s.points; ++i) {
+        const PointRow& p = s.point[static_cast<std::size_t>(i)];
+        if (p.gap <= k_closed && may_collide(s, p) && -rate(s, i) > model.settings.collision_speed)
+            return true;
+    }
+    return false;
+}
 
 double next_collision(const Model& model, const Data& data, double limit) {
     if (model.settings.contact_mode == ContactMode::penalty)

@@ -14,6 +14,12 @@ inline double damping_of(const PointRow& p) {
     return p.gap > 0.0 ? 0.0 : p.damping;
 }
 
+// Closing it is a hit: it was apart, or overlapped without having been in contact.
+inline bool may_collide(const ContactSystem& s, const PointRow& p) {
+    const PatchRow& t = s.row[static_cast<std::size_t>(p.patch)];
+    return p.was_apart || (!t.continuing && !t.collided);
+}
+
 inline double normal_sum(const ContactSystem& s, const PatchRow& t) {
     double sum = 0.0;
     for (int k = 0; k < t.point_count; ++k)

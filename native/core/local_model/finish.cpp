@@ -15,8 +15,11 @@ ContactState next_state(const ContactSystem& s, const PatchRow& t) {
     if (t.collided)
         return ContactState::colliding;
     bool touching = false;
-    for (int k = 0; k < t.point_count; ++k)
-        touching = touching || s.point[static_cast<std::size_t>(t.first_point + k)].gap <= 0.0;
+    for (int k = 0; k < t.point_count; ++k) {
+        const PointRow& p = s.point[static_cast<std::size_t>(t.first_point + k)];
+        // a touch that began and ended within the step is told once
+        touching = touching || p.gap <= 0.0 || (p.impulse > 0.0 && !t.continuing);
+    }
     if (!touching)
         return ContactState::none;
     return t.mode == FrictionMode::stick ? ContactState::sticking : ContactState::sliding;

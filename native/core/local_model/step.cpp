@@ -25,6 +25,24 @@ void find_contacts(const Model& model, Data& data, double dt) {
     detect_patches(data.tool, data.neighbors, {model.settings.margin, dt}, data.previous, data.patches);
 }
 
+void advance(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output) {
+    double left = dt;
+    const int events = data.plan.runs(Stage::collisions) ? model.settings.max_events : 0;
+    for (int event = 0; event < events; ++event) {
+        const double time = local::next_collision(model, data, left);
+        if (time < 0.0)
+            break;
+        if (time > 0.0) {
+            local::integrate(model, data, hand, time, left - time, time / dt, output);
+            left -= time;
+        }
+        if (!local::collide(model, data, output))
+            break;
+    }
+    if (left > 0.0)
+        local::integrate(model, data, hand, left, 0.0, left / dt, output);
+}
+
 } // namespace
 
 void reset(const Model& model, Data& data, const LinkageVector& configuration) {
@@ -80,21 +98,10 @@ void step(const Model& model, Data& data, const HandInput& hand, double dt, Step
 
     output.grip_mobility = local::mobility(model, data);
 
-    double left = dt;
-    const int events = data.plan.runs(Stage::collisions) ? model.settings.max_events : 0;
-    for (int event = 0; event < events; ++event) {
-        const double time = local::next_collision(model, data, left);
-        if (time < 0.0)
-            break;
-        if (time > 0.0) {
-            local::integrate(model, data, hand, time, left - time, time / dt, output);
-            left -= time;
-        }
-        if (!local::collide(model, data, output))
-            break;
-    }
-    if (left > 0.0)
-        local::integrate(model, data, hand, left, 0.0, left / dt, output);
+    if (model.settings.integrator == Integrator::exact)
+        local::step_exactly(model, data, hand, dt, output);
+    else
+        advance(model, data, hand, dt, output);
     local::finish(model, data, output);
     ++data.step;
 }

@@ -110,7 +110,8 @@ bool left_out(const Plan& plan, const char* stage) {
 
 TEST_SUITE("plan") {
     TEST_CASE("with the plan or with everything on, the motion is the same to the last bit") {
-        for (const Integrator integrator : {Integrator::semi_implicit, Integrator::linearly_implicit})
+        for (const Integrator integrator :
+             {Integrator::semi_implicit, Integrator::linearly_implicit, Integrator::exact})
             for (const Case& c : cases()) {
                 const Plan plan = choose_plan(c.model, *c.world);
                 Run full(c, Plan{}, integrator);

@@ -35,6 +35,8 @@ struct PatchMemory {
     /// Normal and tangential force of the last step, N (telemetry).
     double normal_force{0.0};
     double tangent_force{0.0};
+    /// Row of the patch in the step's system, while contacts are looked for again within a step; -1 else.
+    std::int32_t row{-1};
 };
 
 /// The side from which a patch is felt. Detection writes it and reads it back one step later, so that a body

@@ -67,6 +67,8 @@ struct Data {
     std::array<MovableState, k_max_movables> movable;
     PatchList patches;
     PatchList previous;
+    /// Patches at the start of a part of the step (exact integrator).
+    PatchList stretch;
     ContactSystem system;
     CollisionProblem collision;
     CollisionSolution solution;

@@ -91,8 +91,11 @@ struct StepOutput {
     int event_count{0};
     std::array<ContactEvent, k_max_events> event;
     int events_dropped{0};
-    /// Contact solver or collision solver reached its bound and used the fallback.
+    /// Contact integrator or collision solver reached its bound and used the fallback.
     bool fell_back{false};
+    /// The exact integrator did not apply to the whole step, and the linearly implicit one did the rest
+    /// (`fell_back` is set too).
+    bool exact_gave_way{false};
 };
 
 /// Puts the proxy somewhere at rest and forgets all contacts. `configuration`: the pose of a rigid tool's
