@@ -46,6 +46,7 @@ const std::vector<std::string>& run_column_names() {
                                                 "held",
                                                 "reading_missing",
                                                 "fallbacks",
+                                                "exact_gave_way",
                                                 "buttons"};
     return names;
 }
@@ -81,6 +82,7 @@ void fill_run_row(const HapticReport& r, std::array<double, k_run_columns>& row)
     put(r.held ? 1.0 : 0.0);
     put(r.reading_missing ? 1.0 : 0.0);
     put(static_cast<double>(r.fallbacks));
+    put(static_cast<double>(r.exact_gave_way));
     put(static_cast<double>(r.buttons));
 }
 

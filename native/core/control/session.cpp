@@ -331,6 +331,7 @@ void Session::write_report(const GateOutput& gate, const Wrench& command) {
     r.gate = gate.flags;
     r.faults = gate.faults;
     r.fallbacks += output_.fell_back ? 1U : 0U;
+    r.exact_gave_way += output_.exact_gave_way ? 1U : 0U;
     r.patch_overflow = data_->patches.overflow;
     r.movable_overflow = data_->movable_overflow;
     r.reading_missing = missing_;

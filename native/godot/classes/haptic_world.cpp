@@ -275,6 +275,7 @@ Dictionary HapticWorld::statistics() const {
     d["energy_injected_j"] = report_.energy_injected;
     d["collisions"] = static_cast<int64_t>(run.collisions);
     d["fallbacks"] = static_cast<int64_t>(report_.fallbacks);
+    d["exact_gave_way"] = static_cast<int64_t>(report_.exact_gave_way);
     d["patch_overflow"] = static_cast<int64_t>(report_.patch_overflow);
     d["movable_overflow"] = static_cast<int64_t>(report_.movable_overflow);
     d["rows_dropped"] = static_cast<int64_t>(runner_->rows_dropped());

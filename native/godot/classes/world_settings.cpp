@@ -153,9 +153,10 @@ WorldSettings read_world_settings(const Dictionary& from, Problems& problems) {
     w.model.contact_mode =
         r.choice("contact", w.model.contact_mode,
                  {{"penalty_impulse", ContactMode::penalty_impulse}, {"penalty", ContactMode::penalty}});
-    w.model.integrator = r.choice(
-        "integrator", w.model.integrator,
-        {{"semi_implicit", Integrator::semi_implicit}, {"linearly_implicit", Integrator::linearly_implicit}});
+    w.model.integrator = r.choice("integrator", w.model.integrator,
+                                  {{"semi_implicit", Integrator::semi_implicit},
+                                   {"linearly_implicit", Integrator::linearly_implicit},
+                                   {"exact", Integrator::exact}});
     w.model.collision_method = r.choice("collision_method", w.model.collision_method,
                                         {{"poisson", CollisionMethod::poisson},
                                          {"mass_weighted", CollisionMethod::mass_weighted},

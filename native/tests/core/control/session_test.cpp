@@ -41,21 +41,24 @@ Tail run(Experiment1& e, double seconds) {
 } // namespace
 
 TEST_CASE("a steady push comes back through the whole loop, whatever tool and coupling") {
-    for (const Coupling coupling : {Coupling::four_channel, Coupling::virtual_coupling})
-        for (const double tool : {0.05, 0.3, 1.0}) {
-            Experiment1Options o;
-            o.integrator = Integrator::linearly_implicit;
-            o.coupling = coupling;
-            o.tool_mass = tool;
-            o.gain = 0.33;
-            Experiment1 e(o);
-            CAPTURE(tool);
-            CAPTURE(static_cast<int>(coupling));
-            const Tail tail = run(e, 5.0);
-            CHECK(tail.mean == doctest::Approx(2.0).epsilon(0.01));
-            CHECK(tail.swing < 0.2);
-            CHECK(e.session->report().faults == Fault::none);
-        }
+    for (const Integrator integrator : {Integrator::linearly_implicit, Integrator::exact})
+        for (const Coupling coupling : {Coupling::four_channel, Coupling::virtual_coupling})
+            for (const double tool : {0.05, 0.3, 1.0}) {
+                Experiment1Options o;
+                o.integrator = integrator;
+                o.coupling = coupling;
+                o.tool_mass = tool;
+                o.gain = 0.33;
+                Experiment1 e(o);
+                CAPTURE(tool);
+                CAPTURE(static_cast<int>(integrator));
+                CAPTURE(static_cast<int>(coupling));
+                const Tail tail = run(e, 5.0);
+                CHECK(tail.mean == doctest::Approx(2.0).epsilon(0.01));
+                CHECK(tail.swing < 0.2);
+                CHECK(e.session->report().faults == Fault::none);
+                CHECK(e.session->report().exact_gave_way == 0);
+            }
 }
 
 TEST_CASE("a device that measures no force still gives the push back once") {

@@ -10,7 +10,7 @@
 
 namespace haptics {
 
-inline constexpr std::size_t k_run_columns = 44;
+inline constexpr std::size_t k_run_columns = 45;
 
 /// Names in order; the first is t_s.
 const std::vector<std::string>& run_column_names();

@@ -76,9 +76,10 @@ struct HapticReport {
     bool armed{false};
     GateFlag gate{GateFlag::none};
     Fault faults{Fault::none};
-    /// Steps in which a solver used its fallback, contact patches dropped, movables without a place: grow
-    /// only.
+    /// Steps in which a solver used its fallback, those of them in which the exact integrator gave way to the
+    /// linearly implicit one, contact patches dropped, movables without a place: grow only.
     std::uint64_t fallbacks{0};
+    std::uint64_t exact_gave_way{0};
     std::uint64_t patch_overflow{0};
     std::int32_t movable_overflow{0};
     /// The device gave no new sample in this step.
