@@ -8,11 +8,12 @@ namespace haptics {
 std::string FigureError::message() const {
     std::ostringstream out;
     out.precision(6);
-    out << field << " is " << value << ' ' << unit;
+    const std::string of = unit.empty() ? "" : " " + unit;
+    out << field << " is " << value << of;
     if (problem == FigureProblem::not_finite)
         out << ", which is not a number";
     else
-        out << ", must lie between " << minimum << " and " << maximum << ' ' << unit;
+        out << ", must lie between " << minimum << " and " << maximum << of;
     out << ". " << remedy;
     return out.str();
 }

@@ -1,6 +1,8 @@
 #include <haptics/core/pantograph/geometry.hpp>
 #include <haptics/core/pantograph/kinematics.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace haptics {
@@ -36,6 +38,32 @@ std::vector<FigureError> validate_bar(const FiveBarGeometry& bar, const std::str
                 "Give the center as a share of the link's length.");
     check.range("distal_inertia", bar.distal_inertia, 0.0, 1.0, "kg m^2", k_kilograms);
     return check.take();
+}
+
+// an end point that both legs of a five-bar reach: rings around two axes that are `spacing` apart
+void check_legs_meet(const FiveBarGeometry& bar, const std::string& prefix, FigureCheck& all) {
+    const auto reach = [&bar](std::size_t k) { return bar.proximal_length[k] + bar.distal_length[k]; };
+    const auto hole = [&bar](std::size_t k) {
+        return std::abs(bar.proximal_length[k] - bar.distal_length[k]);
+    };
+    const double spacing = bar.base_spacing;
+    FigureCheck check(prefix);
+    if (spacing >= reach(0) + reach(1))
+        check.inconsistent("base_spacing", spacing, 0.0, reach(0) + reach(1), "m",
+                           "The two arms cannot meet: lengthen the links or bring the motor axes together.");
+    else
+        for (std::size_t k = 0; k < 2; ++k)
+            if (hole(k) >= spacing + reach(1 - k)) {
+                // the other arm ends before this one, folded, begins
+                check.inconsistent(
+                    ("distal_length[" + std::to_string(k) + "]").c_str(), bar.distal_length[k],
+                    std::max(0.0, bar.proximal_length[k] - spacing - reach(1 - k)),
+                    bar.proximal_length[k] + spacing + reach(1 - k), "m",
+                    "The two arms cannot meet: make the links of this one more alike, or the other arm "
+                    "longer.");
+                break;
+            }
+    all.append(check.take());
 }
 
 } // namespace
@@ -88,6 +116,8 @@ std::vector<FigureError> validate(const PantographGeometry& geometry) {
         return check.take();
 
     // figures that are fine alone but not together
+    for (std::size_t b = 0; b < static_cast<std::size_t>(geometry.bar_count); ++b)
+        check_legs_meet(geometry.bar[b], "bar[" + std::to_string(b) + "].", check);
     if (geometry.bar_count == 1) {
         const double offset = geometry.attachment[0].norm();
         if (offset > 0.0)
@@ -99,11 +129,23 @@ std::vector<FigureError> validate(const PantographGeometry& geometry) {
             check.inconsistent("attachment", apart, 1.0e-3, 1.0, "m",
                                "Let the two five-bars hold the handle at two different points.");
     }
+    // home would only repeat it
+    if (!check.good())
+        return check.take();
     const PantographKinematics kinematics(geometry);
     const WorkspaceReport report = kinematics.workspace(geometry.home);
-    if (!report.inside)
-        check.inconsistent("home", report.reach_margin, 0.0, 2.0, "m inside reach",
-                           "Move home, lengthen the links, or change elbow_side and end_side.");
+    const PantographState state = kinematics.locate(geometry.home);
+    if (!state.closed || report.reach_margin < 0.0)
+        check.inconsistent(
+            "home", report.reach_margin, 0.0, 2.0, "m inside reach",
+            "The arms do not reach the home pose: move home or the motors, or lengthen the links.");
+    else if (!state.reachable)
+        check.inconsistent(
+            "home", 0.0, 1.0, 1.0, "of its assembly mode",
+            "The end point is on the other side of the elbows there: change end_side, or move home.");
+    else if (!report.inside)
+        check.inconsistent("home", geometry.home.z(), -geometry.rotation_limit, geometry.rotation_limit,
+                           "rad", "Turn home within rotation_limit.");
     else if (report.singularity < 0.01)
         check.inconsistent("home", report.singularity, 0.01, 1.0, "of singularity",
                            "Move home away from the pose in which the links line up.");

@@ -11,9 +11,13 @@
 // least singular value measures it.
 //
 // Forward: the elbows from the angles, each end point as an intersection of circles about its two elbows
-// (end_side picks), the pose from the two end points, then Gauss-Newton over the encoders, delta q = (G^T
-// G)^-1 G^T (phi - phi(q)), G = rates. Angles of a real pose are a zero of that, so the iteration converges
-// quadratically; what remains is the part no pose explains.
+// (end_side picks), the pose from the two end points. Then the least squares over the encoders, |m|^2 with
+// the misfit m = phi - phi(q), by Newton's method: (G^T G - sum m_i H_i) delta q = G^T m, G = rates.
+// Differentiating the rate once more at zero acceleration of the handle (P'' = -theta'^2 r, E'' = phi''
+// perp(e) - phi'^2 e) gives
+//   H_i(q', q') = phi''_i = ( d . (P'' + phi'^2 e) + |P' - E'|^2 ) / (e x d).
+// Without the H_i (Gauss-Newton) a slipped encoder makes it converge slowly or not at all. What remains of m
+// at the end is orthogonal to all columns of G: the part no pose explains.
 
 #include <haptics/core/pantograph/five_bar.hpp>
 #include <haptics/core/pantograph/kinematics.hpp>
@@ -30,7 +34,17 @@ namespace {
 constexpr double k_pi = std::numbers::pi;
 // least |e x d| that is divided by: keeps rates finite at full stretch (m^2)
 constexpr double k_least_moment = 1.0e-9;
-constexpr int k_refinements = 4;
+// angles of a real pose take two passes, those of a slipped encoder a few more
+constexpr int k_refinements = 12;
+// steps of the refinement: too small for the sum of squares to judge, good enough, done (m)
+constexpr double k_flat = 1.0e-8;
+constexpr double k_settled = 1.0e-9;
+constexpr double k_exact = 1.0e-14;
+// more than that is no slip but no pose at all (rad)
+constexpr double k_absurd_misfit = 0.25;
+// angles of a five-bar in its working mode fit their own inverse but for rounding; the other mode is far off,
+// save where an arm is so nearly straight that both are the same (rad)
+constexpr double k_mode_slack = 0.02;
 // no handle is that far away (m, rad)
 constexpr double k_absurd = 1.0e6;
 
@@ -49,6 +63,13 @@ Mat3 inverse_or_zero(const Mat3& m) {
     if (!std::isfinite(determinant) || !(determinant > 1.0e-15 * scale * scale * scale))
         return Mat3::Zero();
     return m.inverse();
+}
+
+// least singular value of the two unit lines of one five-bar: 0 where they line up
+double line_up(const PantographState& state, std::size_t bar) {
+    const double cosine =
+        state.leg[2 * bar].distal.normalized().dot(state.leg[2 * bar + 1].distal.normalized());
+    return std::sqrt(std::max(0.0, 1.0 - std::abs(cosine)));
 }
 
 } // namespace
@@ -75,6 +96,8 @@ PantographState PantographKinematics::locate(const Pose& pose) const {
     const bool finite = pose.allFinite() && pose.cwiseAbs().maxCoeff() < k_absurd;
     const Pose used = finite ? pose : geometry_.home;
     const Transform handle(freedoms() == 3 ? used : Pose(used.x(), used.y(), 0.0));
+    state.pose = used;
+    state.closed = finite;
     state.reachable = finite;
     state.reach_margin = finite ? 1.0e9 : -1.0e9;
     for (std::size_t b = 0; b < index(geometry_.bar_count); ++b) {
@@ -92,7 +115,7 @@ PantographState PantographKinematics::locate(const Pose& pose) const {
             const CirclePoint elbow = intersect_circles(base_[i], l, end, L, bar.elbow_side[k]);
             const double distance = (end - base_[i]).norm();
             state.reach_margin = std::min({state.reach_margin, l + L - distance, distance - std::abs(l - L)});
-            state.reachable = state.reachable && elbow.meets;
+            state.closed = state.closed && elbow.meets;
             LegState& leg = state.leg[i];
             leg.base = base_[i];
             leg.proximal = elbow.point - base_[i];
@@ -115,6 +138,7 @@ PantographState PantographKinematics::locate(const Pose& pose) const {
         const double side = cross(elbows, first.distal);
         state.reachable = state.reachable && side * bar.end_side > 0.0;
     }
+    state.reachable = state.reachable && state.closed;
     return state;
 }
 
@@ -134,7 +158,8 @@ PoseEstimate PantographKinematics::forward(const JointVector& angles) const {
     if (!angles.head(motors()).allFinite())
         return estimate;
 
-    // end points from the elbows
+    // end points from the elbows; where two distal links nearly line up, errors of the angles can part the
+    // circles, and the nearest point starts the least squares as well
     std::array<Vec2, 2> end{Vec2::Zero(), Vec2::Zero()};
     bool meets = true;
     for (std::size_t b = 0; b < index(geometry_.bar_count); ++b) {
@@ -150,7 +175,8 @@ PoseEstimate PantographKinematics::forward(const JointVector& angles) const {
     }
     if (geometry_.bar_count == 1) {
         estimate.pose << end[0].x(), end[0].y(), 0.0;
-        estimate.valid = meets;
+        const PantographState state = locate(estimate.pose);
+        estimate.valid = meets && misfit(state, angles).cwiseAbs().maxCoeff() < k_mode_slack;
         return estimate;
     }
 
@@ -163,25 +189,97 @@ PoseEstimate PantographKinematics::forward(const JointVector& angles) const {
     estimate.pose << middle.x(), middle.y(), theta;
 
     // least squares over all four encoders
-    bool reachable = true;
-    for (int pass = 0; pass <= k_refinements; ++pass) {
-        const PantographState state = locate(estimate.pose);
-        reachable = state.reachable;
-        JointVector error;
-        for (int i = 0; i < k_max_motors; ++i) {
-            const Vec2& e = state.leg[index(i)].proximal;
-            error[i] = wrap(angles[i] - std::atan2(e.y(), e.x()));
-        }
-        estimate.residual = error.norm();
-        if (pass == k_refinements || !reachable)
+    PantographState state = locate(estimate.pose);
+    estimate.misfit = misfit(state, angles);
+    bool converged = false;
+    double last_size = 1.0e9;
+    for (int pass = 0; pass < k_refinements && state.closed && !converged; ++pass) {
+        const Pose change = refinement(state, estimate.misfit);
+        const double size = change.head<2>().norm() + length_ * std::abs(change.z());
+        // steps that no longer shrink are rounding
+        if (size >= last_size && size < k_settled) {
+            converged = true;
             break;
-        const Pose change = jacobian(state) * error;
-        estimate.pose += change;
-        if (change.head<2>().norm() + length_ * std::abs(change.z()) < 1.0e-13)
+        }
+        last_size = size;
+        // the whole step, or as much of it as brings the pose nearer
+        double part = 1.0;
+        bool nearer = false;
+        for (; part > 0.01 && !nearer; part *= 0.5) {
+            const Pose candidate = estimate.pose + part * change;
+            const PantographState there = locate(candidate);
+            const JointVector left = misfit(there, angles);
+            // the sum of squares is flat at its least: it cannot judge steps below the root of its rounding
+            nearer = there.closed && (size < k_flat || left.squaredNorm() <= estimate.misfit.squaredNorm());
+            if (!nearer)
+                continue;
+            estimate.pose = candidate;
+            estimate.misfit = left;
+            state = there;
+        }
+        converged = size < k_exact;
+        if (!nearer)
             break;
     }
-    estimate.valid = meets && reachable;
+    converged = converged || last_size < k_settled;
+    estimate.residual = estimate.misfit.norm();
+    estimate.valid = converged && state.reachable && estimate.residual < k_absurd_misfit;
     return estimate;
+}
+
+Pose PantographKinematics::refinement(const PantographState& state, const JointVector& misfit) const {
+    const Vec3 unit(1.0, 1.0, 1.0 / length_);
+    const JointJacobian rates = state.rates * unit.asDiagonal();
+    const Vec3 slope = rates.transpose() * misfit;
+    const Mat3 normal = rates.transpose() * rates;
+    // what the misfit adds through the curvature of the joint angles
+    Mat3 curved = normal;
+    for (int i = 0; i < motors(); ++i) {
+        const LegState& leg = state.leg[index(i)];
+        const double moment = cross(leg.proximal, leg.distal);
+        if (std::abs(moment) < k_least_moment)
+            continue;
+        const Eigen::RowVector3d g = rates.row(i);
+        Eigen::Matrix<double, 2, 3> relative = -perpendicular(leg.proximal) * g;
+        relative.leftCols<2>() += Mat2::Identity();
+        relative.col(2) += perpendicular(leg.arm) / length_;
+        Mat3 second = leg.distal.dot(leg.proximal) * g.transpose() * g + relative.transpose() * relative;
+        second(2, 2) -= leg.distal.dot(leg.arm) / (length_ * length_);
+        curved -= misfit[i] / moment * second;
+    }
+    // Newton where the sum of squares is a bowl, Gauss-Newton where it is not
+    const Eigen::LLT<Mat3> bowl(curved);
+    if (bowl.info() == Eigen::Success && curved.determinant() > 0.05 * normal.determinant())
+        return unit.cwiseProduct(bowl.solve(slope));
+    return unit.cwiseProduct(inverse_or_zero(normal) * slope);
+}
+
+JointVector PantographKinematics::misfit(const PantographState& state, const JointVector& angles) const {
+    JointVector left = JointVector::Zero();
+    for (int i = 0; i < motors(); ++i) {
+        const Vec2& e = state.leg[index(i)].proximal;
+        left[i] = wrap(angles[i] - std::atan2(e.y(), e.x()));
+    }
+    return left;
+}
+
+JointVector PantographKinematics::unexplained(const PantographState& state) const {
+    if (freedoms() == 2)
+        return JointVector::Zero();
+    // by cofactors: polynomials of the entries, hence smooth
+    const JointJacobian& a = state.rates;
+    const auto minor = [&a](int i, int j, int k) {
+        return a(i, 0) * (a(j, 1) * a(k, 2) - a(j, 2) * a(k, 1)) -
+               a(i, 1) * (a(j, 0) * a(k, 2) - a(j, 2) * a(k, 0)) +
+               a(i, 2) * (a(j, 0) * a(k, 1) - a(j, 1) * a(k, 0));
+    };
+    const JointVector n(minor(1, 2, 3), -minor(0, 2, 3), minor(0, 1, 3), -minor(0, 1, 2));
+    const double size = n.norm();
+    // columns of the rates span a box of that volume; none, and the direction is not unique
+    const double box = a.col(0).norm() * a.col(1).norm() * a.col(2).norm();
+    if (!std::isfinite(size) || !(size > 1.0e-9 * box))
+        return JointVector::Zero();
+    return n / size;
 }
 
 Eigen::Matrix<double, 3, 4> PantographKinematics::jacobian(const PantographState& state) const {
@@ -208,8 +306,7 @@ WorkspaceReport PantographKinematics::workspace(const Pose& pose, const Pantogra
         freedoms() == 3 && std::isfinite(pose.z()) ? geometry_.rotation_limit - std::abs(pose.z()) : k_pi;
     report.inside = state.reachable && report.rotation_margin >= 0.0;
     if (freedoms() == 2) {
-        const double cosine = state.leg[0].distal.normalized().dot(state.leg[1].distal.normalized());
-        report.singularity = std::sqrt(std::max(0.0, 1.0 - std::abs(cosine)));
+        report.singularity = line_up(state, 0);
         return report;
     }
     Mat3 gram = Mat3::Zero();
@@ -220,7 +317,8 @@ WorkspaceReport PantographKinematics::workspace(const Pose& pose, const Pantogra
     }
     Eigen::SelfAdjointEigenSolver<Mat3> solver;
     solver.computeDirect(gram, Eigen::EigenvaluesOnly);
-    report.singularity = std::sqrt(std::max(0.0, solver.eigenvalues()[0]));
+    report.singularity =
+        std::min({std::sqrt(std::max(0.0, solver.eigenvalues()[0])), line_up(state, 0), line_up(state, 1)});
     return report;
 }
 

@@ -22,16 +22,6 @@ namespace {
 
 using Vec4 = Eigen::Vector4d;
 
-// the vector orthogonal to the three columns, by cofactors
-Vec4 orthogonal(const Eigen::Matrix<double, 4, 3>& a) {
-    const auto minor = [&a](int i, int j, int k) {
-        return a(i, 0) * (a(j, 1) * a(k, 2) - a(j, 2) * a(k, 1)) -
-               a(i, 1) * (a(j, 0) * a(k, 2) - a(j, 2) * a(k, 0)) +
-               a(i, 2) * (a(j, 0) * a(k, 1) - a(j, 1) * a(k, 0));
-    };
-    return {minor(1, 2, 3), -minor(0, 2, 3), minor(0, 1, 3), -minor(0, 1, 2)};
-}
-
 double largest(const Vec4& u0, const Vec4& n, double lambda) {
     return (u0 + lambda * n).cwiseAbs().maxCoeff();
 }
@@ -92,7 +82,8 @@ TorqueSolution joint_torques(const PantographKinematics& kinematics, const Panto
     if (!std::isfinite(determinant) || !(determinant > 1.0e-12 * size * size * size))
         return solution;
     const Vec4 u0 = a * (normal.inverse() * unit.cwiseProduct(wrench));
-    Vec4 n = orthogonal(a);
+    // A^T n = 0 with A = diag(limit) G
+    Vec4 n = kinematics.unexplained(state).cwiseQuotient(limit);
     const double norm = n.norm();
     n = norm > 0.0 ? Vec4(n / norm) : Vec4(Vec4::Zero());
     if (!u0.allFinite() || !n.allFinite())

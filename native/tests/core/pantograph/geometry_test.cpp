@@ -46,9 +46,47 @@ TEST_SUITE("pantograph geometry") {
         REQUIRE_FALSE(validate(merged).empty());
         CHECK(validate(merged)[0].field == "attachment");
 
+        CHECK(validate(far)[0].message().find("The arms do not reach the home pose") != std::string::npos);
+
+        PantographGeometry mirrored = pantograph_mk2();
+        mirrored.bar[0].end_side = -1;
+        REQUIRE(validate(mirrored).size() == 1);
+        CHECK(validate(mirrored)[0].message().find("change end_side") != std::string::npos);
+
+        PantographGeometry turned = ubc_twin_pantograph();
+        turned.home.z() = 0.5;
+        turned.rotation_limit = 0.3;
+        REQUIRE(validate(turned).size() == 1);
+        CHECK(validate(turned)[0].message().find("rotation_limit") != std::string::npos);
+
         PantographGeometry bars = pantograph_mk2();
         bars.bar_count = 3;
         REQUIRE(validate(bars).size() == 1);
         CHECK(validate(bars)[0].field == "bar_count");
+    }
+
+    TEST_CASE("arms that cannot meet are named once, with the figure that parts them") {
+        PantographGeometry wide = pantograph_mk2();
+        wide.bar[0].base_spacing = 0.3;
+        REQUIRE(validate(wide).size() == 1);
+        CHECK(validate(wide)[0].message() == "bar[0].base_spacing is 0.3 m, must lie between 0 and 0.276 m. "
+                                             "The two arms cannot meet: lengthen the "
+                                             "links or bring the motor axes together.");
+
+        PantographGeometry nested = ubc_twin_pantograph();
+        nested.bar[1].proximal_length[0] = 0.03;
+        nested.bar[1].distal_length[0] = 0.9;
+        REQUIRE(validate(nested).size() == 1);
+        CHECK(validate(nested)[0].field == "bar[1].distal_length[0]");
+        CHECK(validate(nested)[0].message().find("The two arms cannot meet") != std::string::npos);
+    }
+
+    TEST_CASE("an encoder without counts is named") {
+        PantographGeometry geometry = haply_2diy_v3();
+        geometry.motor.counts_per_revolution = 0.0;
+        REQUIRE(validate(geometry).size() == 1);
+        CHECK(validate(geometry)[0].message() == "motor.counts_per_revolution is 0 1/rev, must lie between "
+                                                 "16 and 1e+09 1/rev. Count all four quadrature "
+                                                 "edges over one turn of the joint.");
     }
 }

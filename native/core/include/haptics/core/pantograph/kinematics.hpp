@@ -30,11 +30,14 @@ struct LegState {
 /// The linkage at one handle pose. Always finite; where the pose cannot be reached the nearest stretch of
 /// each leg is given.
 struct PantographState {
+    /// The pose located, m, rad.
+    Pose pose{0.0, 0.0, 0.0};
     std::array<LegState, k_max_motors> leg{};
     /// Joint rates = rates * twist; wrench = rates^T * joint torques.
     JointJacobian rates{JointJacobian::Zero()};
-    /// True when every leg reaches its end point, in front of its motors, and both five-bars are in their
-    /// assembly mode.
+    /// True when every leg reaches its end point.
+    bool closed{false};
+    /// True when they do in front of their motors, and both five-bars are in their assembly mode.
     bool reachable{false};
     /// Least distance of an end point to the edge of its annulus of reach or to the line of its motors, m;
     /// negative outside.
@@ -44,10 +47,13 @@ struct PantographState {
 /// Pose by least squares over the encoders.
 struct PoseEstimate {
     Pose pose{0.0, 0.0, 0.0};
-    /// Norm of the joint angles that no pose explains, rad. 0 for a single five-bar (two encoders, two
-    /// freedoms).
+    /// Joint angles less those of `pose`, rad, each in [-pi, pi]: what no pose explains. Zero for a single
+    /// five-bar (two encoders, two freedoms).
+    JointVector misfit{JointVector::Zero()};
+    /// Norm of `misfit`, rad.
     double residual{0.0};
-    /// False when the angles belong to no pose; `pose` is then finite but not to be trusted.
+    /// False when the angles belong to no pose in the working and assembly mode of the geometry (also when
+    /// the residual exceeds 0.25 rad); `pose` is then finite but not to be trusted.
     bool valid{false};
 };
 
@@ -60,7 +66,9 @@ struct WorkspaceReport {
     /// Angle to the rotation stop, rad; pi with two freedoms.
     double rotation_margin{0.0};
     /// Smallest singular value of the unit lines of the distal links (moments over the handle's half width):
-    /// 0 where some wrench cannot be held whatever the torques, 1 for a single five-bar at a right angle.
+    /// 0 where some wrench cannot be held whatever the torques, 1 for a single five-bar at a right angle. For
+    /// a twin also at most that of each five-bar alone, since beyond 0 there it would leave its assembly
+    /// mode.
     double singularity{0.0};
 };
 
@@ -88,6 +96,10 @@ class PantographKinematics {
     /// Twist per joint rates: the exact inverse for two motors, the least-squares inverse of `rates` for
     /// four. Zero at singularities.
     [[nodiscard]] Eigen::Matrix<double, 3, 4> jacobian(const PantographState& state) const;
+    /// The direction of joint angles that no motion explains: unit, orthogonal to the three columns of
+    /// `rates`, smooth along every path without a singularity. Also the torques that the linkage bears within
+    /// itself. Zero for a single five-bar and where it is not unique.
+    [[nodiscard]] JointVector unexplained(const PantographState& state) const;
     /// Margins of `pose` (with the state that `locate` gave for it).
     [[nodiscard]] WorkspaceReport workspace(const Pose& pose, const PantographState& state) const;
     /// Margins of `pose`.
@@ -102,6 +114,9 @@ class PantographKinematics {
     [[nodiscard]] double count_of_angle(int i, double angle) const;
 
   private:
+    [[nodiscard]] Pose refinement(const PantographState& state, const JointVector& misfit) const;
+    [[nodiscard]] JointVector misfit(const PantographState& state, const JointVector& angles) const;
+
     PantographGeometry geometry_;
     std::array<Vec2, k_max_motors> base_;
     std::array<Vec2, 2> front_;
