@@ -81,6 +81,7 @@ Session::Session(const SessionSettings& settings, const Model& model, const Outp
     , data_(std::make_unique<Data>())
     , gate_(gate)
     , device_(device)
+    , care_(settings.care, gate, settings.reading_error)
     , velocity_(settings.reading_error, settings.velocity_window) {
     reset(*model_, *data_, start);
     arm_wanted_ = settings.arm_at_start;
@@ -167,9 +168,16 @@ void Session::read_device() {
     missing_ = !device_.read(reading_);
     fresh_ = !missing_ && (reading_.sequence != last || last == 0);
     // a device that found or lost its zero, or was away, may be anywhere
-    const bool elsewhere =
-        !missing_ && (reading_.homed != gate_.homed() || (fresh_ && silent_for_ > settings_.device_patience));
+    const bool homed_anew = !missing_ && reading_.homings != homings_;
+    const bool elsewhere = !missing_ && (homed_anew || reading_.homed != gate_.homed() ||
+                                         (fresh_ && silent_for_ > settings_.device_patience));
     if (elsewhere) {
+        care_.restart();
+        if (homed_anew) {
+            homings_ = reading_.homings;
+            care_.homed();
+            gate_.set_homed(false);
+        }
         gate_.set_homed(reading_.homed);
         velocity_.reset();
         handle_velocity_.setZero();
@@ -193,6 +201,7 @@ void Session::follow_handle() {
         const double interval = reading_.interval > 0.0 ? reading_.interval : silent_for_;
         silent_for_ = 0.0;
         age_ = reading_.age;
+        care_.take(reading_, interval);
         handle_velocity_ = map.twist_to_scene(
             reading_.has_velocity ? reading_.velocity : velocity_.update(reading_.pose, interval));
     }
@@ -204,7 +213,7 @@ void Session::follow_handle() {
 Fault Session::device_faults() const {
     // half a step of slack: the sum of many steps is not exact
     const bool silent = silent_for_ > settings_.device_patience + 0.5 * settings_.step;
-    return reading_.faults | (silent ? Fault::reconnect_the_device : Fault::none);
+    return reading_.faults | care_.fault() | (silent ? Fault::reconnect_the_device : Fault::none);
 }
 
 // arms by itself only where nothing ever went wrong; a fault takes an explicit arm() that came after its
@@ -286,16 +295,20 @@ void Session::step() {
     grasp();
     run_model();
     const Wrench force = command();
-    const Wrench wanted = gate_.armed() ? settings_.mapping.wrench_to_device(force) : Wrench(Wrench::Zero());
+    // disarmed the compensation is no command either: arming asks for free space
+    Wrench wanted = Wrench::Zero();
+    if (gate_.armed())
+        wanted = settings_.mapping.wrench_to_device(force) + care_.wrench();
     const Twist device_twist = settings_.mapping.twist_to_device(handle_velocity_);
     const Fault device = device_faults();
     gate_.raise(device);
     try_to_arm(device);
     const GateOutput gated = gate_.apply(wanted, reading_.pose, device_twist, settings_.step);
     share_ = pass_fraction(wanted, gated, share_);
+    care_.sent(wanted, gated.applied);
     device_.write(gated.applied);
-    // the handle felt all forces since its last sample
-    force_sum_ += gated.applied;
+    // the handle felt all forces since its last sample; the compensation keeps its own books
+    force_sum_ += gated.applied - care_.applied();
     force_count_ += 1.0;
     ledger_.set_force(force_sum_ / force_count_);
     device_.advance(settings_.step);
@@ -313,6 +326,7 @@ void Session::write_report(const GateOutput& gate, const Wrench& command) {
     r.grip = grip_pose(data_->grip, data_->pose);
     r.velocity = data_->velocity;
     r.force = map.wrench_to_scene(gate.applied);
+    r.compensation = map.wrench_to_scene(care_.applied());
     r.command = map.wrench_to_scene(command);
     r.contact = output_.contact;
     r.coupling = output_.coupling;

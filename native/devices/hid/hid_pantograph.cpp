@@ -81,6 +81,7 @@ bool HidPantograph::drain(std::int64_t now_ns) {
 // false when the counts belong to no pose
 bool HidPantograph::place(const HidSample& sample) {
     const bool homed = (sample.status & HAPTICS_STATUS_HOMED) != 0 && !stream_.lost_its_place();
+    reading_.has_angles = homed;
     if (!homed) {
         reading_.homed = false;
         reading_.pose = kinematics_.geometry().home;
@@ -100,6 +101,8 @@ bool HidPantograph::place(const HidSample& sample) {
         reading_.faults = reading_.faults | Fault::home_the_device_again;
     reading_.homed = true;
     reading_.pose = estimate.pose;
+    reading_.angles = angles;
+    reading_.homings = sample.homings;
     state_ = kinematics_.locate(reading_.pose);
     return true;
 }

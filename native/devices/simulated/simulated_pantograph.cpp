@@ -10,6 +10,10 @@
 // an inelastic stop) and the handle is moved back along that normal. If it still is outside, the sub-step is
 // undone and the handle stands.
 //
+// Coulomb friction at the joints (linkage model): each joint i takes an impulse |p_i| <= h f out of its rate
+// g_i v, one after the other until nothing changes: v += M^-1 g_i^T dp_i, dp_i = -g_i v / (g_i M^-1 g_i^T)
+// cut to what is left of the bound. The fixed point is the greatest loss of energy, so joints truly stick.
+//
 // The force between hand and handle is the muscles' force less what accelerates the hand's own mass.
 
 #include <haptics/core/pantograph/inertia.hpp>
@@ -82,11 +86,14 @@ SimulatedPantograph::SimulatedPantograph(const SimulatedPantographOptions& optio
     , kinematics_(options.geometry)
     , hand_(options.hand, options.hand.mass + handle_mass(options.geometry.home)(0, 0),
             options.hand.inertia + handle_mass(options.geometry.home)(2, 2), options.geometry.home)
-    , command_steps_(static_cast<std::size_t>(options.command_delay_steps), Vec3::Zero())
+    , command_steps_(static_cast<std::size_t>(options.command_delay_steps), Command{})
     , command_time_(options.command_delay)
-    , readings_(static_cast<std::size_t>(options.reading_delay_steps), options.geometry.home)
+    , readings_(static_cast<std::size_t>(options.reading_delay_steps), Sample{})
     , random_(options.seed)
-    , pose_(options.geometry.home) {}
+    , pose_(options.geometry.home)
+    , measured_(options.geometry.home) {
+    readings_.fill(exactly());
+}
 
 Mat3 SimulatedPantograph::handle_mass(const Pose& pose) const {
     if (options_.inertia_model == InertiaModel::linkage)
@@ -94,46 +101,74 @@ Mat3 SimulatedPantograph::handle_mass(const Pose& pose) const {
     return Vec3(options_.mass, options_.mass, options_.inertia).asDiagonal();
 }
 
-Pose SimulatedPantograph::measure() {
-    Pose pose = pose_;
+SimulatedPantograph::Sample SimulatedPantograph::exactly() const {
+    Sample sample{pose_, JointVector::Zero()};
+    kinematics_.inverse(pose_, sample.angles);
+    return sample;
+}
+
+SimulatedPantograph::Sample SimulatedPantograph::measure() {
+    Sample sample{pose_, JointVector::Zero()};
     if (options_.encoder_model == EncoderModel::joint) {
-        JointVector angles;
-        kinematics_.inverse(pose_, angles);
-        for (int i = 0; i < kinematics_.motors(); ++i)
-            angles[i] = kinematics_.angle_of_count(i, std::round(kinematics_.count_of_angle(i, angles[i])));
-        const PoseEstimate estimate = kinematics_.forward(angles);
+        sample = exactly();
+        for (int i = 0; i < kinematics_.motors(); ++i) {
+            const double count = std::round(kinematics_.count_of_angle(i, sample.angles[i])) + slip_[i];
+            sample.angles[i] = kinematics_.angle_of_count(i, count);
+        }
+        const PoseEstimate estimate = kinematics_.forward(sample.angles);
         residual_ = estimate.residual;
-        return estimate.valid ? estimate.pose : pose_;
+        // as a driver does: angles that are no pose leave the last one
+        if (estimate.valid)
+            measured_ = estimate.pose;
+        sample.pose = measured_;
+        return sample;
     }
     std::normal_distribution<double> normal;
     for (int axis = 0; axis < 3; ++axis) {
         if (options_.noise[axis] > 0.0)
-            pose[axis] += options_.noise[axis] * normal(random_);
+            sample.pose[axis] += options_.noise[axis] * normal(random_);
         if (options_.encoder_model == EncoderModel::handle)
-            pose[axis] = rounded(pose[axis], options_.encoder_resolution[axis]);
+            sample.pose[axis] = rounded(sample.pose[axis], options_.encoder_resolution[axis]);
     }
     if (freedoms() == 2)
-        pose.z() = 0.0;
-    return pose;
+        sample.pose.z() = 0.0;
+    return sample;
 }
 
 bool SimulatedPantograph::read(DeviceReading& reading) {
-    reading.pose = readings_.push(measure());
+    const Sample sample = readings_.push(measure());
+    reading.pose = sample.pose;
+    reading.angles = sample.angles;
+    reading.has_angles = options_.encoder_model == EncoderModel::joint;
     reading.velocity = options_.measures_velocity ? twist_ : Twist(Twist::Zero());
     reading.has_velocity = options_.measures_velocity;
     reading.hand_force = options_.measures_force ? hand_force_ : Wrench(Wrench::Zero());
     reading.has_hand_force = options_.measures_force;
     reading.buttons = buttons_;
+    reading.homings = homings_;
     reading.sequence = ++sequence_;
     return true;
 }
 
+void SimulatedPantograph::slip_encoder(int axis, double counts) {
+    if (axis >= 0 && axis < kinematics_.motors() && std::isfinite(counts))
+        slip_[axis] += std::round(counts);
+}
+
 void SimulatedPantograph::write(const Wrench& force) {
-    Wrench given = force.allFinite() ? force : Wrench(Wrench::Zero());
-    if (options_.limit_motors)
-        given *= joint_torques(kinematics_, kinematics_.locate(pose_), given).scale;
+    Command given;
+    given.wrench = force.allFinite() ? force : Wrench(Wrench::Zero());
     if (freedoms() == 2)
-        given.z() = 0.0;
+        given.wrench.z() = 0.0;
+    const bool linkage = options_.inertia_model == InertiaModel::linkage;
+    if (options_.limit_motors || linkage) {
+        const TorqueSolution solution = joint_torques(kinematics_, kinematics_.locate(pose_), given.wrench);
+        given.torque = solution.torque;
+        if (options_.limit_motors)
+            given.wrench *= solution.scale;
+        else if (solution.scale > 0.0)
+            given.torque /= solution.scale;
+    }
     command_time_.put(time_, command_steps_.push(given));
 }
 
@@ -151,7 +186,8 @@ void SimulatedPantograph::advance(double dt) {
 }
 
 void SimulatedPantograph::sub_step(double h) {
-    motor_force_ = command_time_.get(time_, 0.5 * h);
+    const Command& command = command_time_.get(time_, 0.5 * h);
+    motor_force_ = command.wrench;
     hand_.advance(time_ + 0.5 * h);
     const Pose before = pose_;
     const Twist was = twist_;
@@ -161,10 +197,15 @@ void SimulatedPantograph::sub_step(double h) {
     const bool linkage = options_.inertia_model == InertiaModel::linkage;
     PantographState state;
     Mat3 mass = Vec3(options_.mass, options_.mass, options_.inertia).asDiagonal();
+    Mat3 drag = Vec3(options_.viscous_friction, options_.viscous_friction, options_.rotation_viscous_friction)
+                    .asDiagonal();
     Wrench steady = motor_force_;
     if (linkage) {
         state = kinematics_.locate(middle);
         mass = handle_mass_matrix(kinematics_, state);
+        motor_force_ = state.rates.transpose() * command.torque;
+        drag += options_.geometry.motor.viscous_friction * state.rates.transpose() * state.rates;
+        steady = motor_force_;
         steady += gravity_wrench(kinematics_, state, options_.gravity);
     } else {
         steady.head<2>() += options_.mass * options_.gravity;
@@ -172,10 +213,8 @@ void SimulatedPantograph::sub_step(double h) {
     const Vec3 hand_mass(options_.hand.mass, options_.hand.mass, options_.hand.inertia);
     mass.diagonal() += hand_mass;
     const Mat3 mobility = mass.inverse();
-    const Vec3 viscous(options_.viscous_friction, options_.viscous_friction,
-                       options_.rotation_viscous_friction);
     const auto acceleration = [&](const Twist& twist) -> Twist {
-        Wrench force = steady + hand_.force(middle, twist) - viscous.cwiseProduct(twist);
+        Wrench force = steady + hand_.force(middle, twist) - drag * twist;
         if (linkage)
             force -= velocity_wrench(kinematics_, state, twist);
         Twist result = mobility * force;
@@ -187,6 +226,8 @@ void SimulatedPantograph::sub_step(double h) {
     twist_ = was + h * acceleration(predicted);
 
     // Coulomb friction
+    if (linkage && options_.geometry.motor.coulomb_friction > 0.0)
+        rub_joints(state, mobility, h);
     twist_.head<2>() *=
         slowed(twist_.head<2>().norm(), h * options_.coulomb_friction, 0.5 * (mass(0, 0) + mass(1, 1)));
     twist_.z() *= slowed(std::abs(twist_.z()), h * options_.rotation_coulomb_friction, mass(2, 2));
@@ -199,6 +240,33 @@ void SimulatedPantograph::sub_step(double h) {
         twist_.setZero();
     }
     hand_force_ = hand_.force(pose_, twist_) - hand_mass.cwiseProduct(twist_ - was) / h;
+}
+
+void SimulatedPantograph::rub_joints(const PantographState& state, const Mat3& mobility, double h) {
+    const double most = h * options_.geometry.motor.coulomb_friction;
+    // the last sub-step's impulses are nearly this one's
+    rubbing_ = rubbing_.cwiseMax(-most).cwiseMin(most);
+    twist_ += mobility * (state.rates.transpose() * rubbing_);
+    constexpr int k_sweeps = 20;
+    for (int sweep = 0; sweep < k_sweeps; ++sweep) {
+        double change = 0.0;
+        for (int i = 0; i < kinematics_.motors(); ++i) {
+            const Eigen::RowVector3d joint = state.rates.row(i);
+            const Vec3 response = mobility * joint.transpose();
+            const double lightness = joint * response;
+            if (!(lightness > 0.0))
+                continue;
+            const double wanted = std::clamp(rubbing_[i] - joint.dot(twist_) / lightness, -most, most);
+            const double given = wanted - rubbing_[i];
+            rubbing_[i] = wanted;
+            twist_ += given * response;
+            change = std::max(change, std::abs(given));
+        }
+        if (change < 1.0e-4 * most)
+            break;
+    }
+    if (freedoms() == 2)
+        twist_.z() = 0.0;
 }
 
 double SimulatedPantograph::room(const Pose& pose) const {
@@ -247,7 +315,9 @@ bool SimulatedPantograph::place(const Pose& pose, const Twist& twist) {
         twist_.z() = 0.0;
     }
     hand_.restart(time_, pose_);
-    readings_.fill(pose_);
+    measured_ = pose_;
+    rubbing_.setZero();
+    readings_.fill(exactly());
     return true;
 }
 

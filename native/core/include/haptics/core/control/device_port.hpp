@@ -1,6 +1,7 @@
 #pragma once
 /// What the haptic step needs of a device, real or simulated.
 
+#include <haptics/core/pantograph/kinematics.hpp>
 #include <haptics/core/safety/fault.hpp>
 #include <haptics/core/types.hpp>
 
@@ -12,6 +13,10 @@ namespace haptics {
 struct DeviceReading {
     /// Handle pose as the encoders give it (theta 0 when the device has two freedoms).
     Pose pose{0.0, 0.0, 0.0};
+    /// Joint angles as the encoders give them, rad, when the device has encoders at its joints: they let the
+    /// loop see an encoder slip.
+    JointVector angles{JointVector::Zero()};
+    bool has_angles{false};
     /// Handle velocity when the device measures it, otherwise see has_velocity.
     Twist velocity{0.0, 0.0, 0.0};
     bool has_velocity{false};
@@ -30,6 +35,9 @@ struct DeviceReading {
     double age{0.0};
     /// The device knows its zero; while it does not, the pose means nothing and no force may come.
     bool homed{true};
+    /// Changes each time the device finds its zero (again): what was known of its encoders before means
+    /// nothing then.
+    std::uint32_t homings{0};
     /// What the device or its driver found wrong in this step.
     Fault faults{Fault::none};
 };

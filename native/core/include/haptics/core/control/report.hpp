@@ -54,6 +54,8 @@ struct HapticReport {
     Twist velocity{0.0, 0.0, 0.0};
     /// Force that left the output gate for the hand (scene axes), N, N, N m.
     Wrench force{0.0, 0.0, 0.0};
+    /// The part of it that holds the device's own weight, friction and inertia.
+    Wrench compensation{0.0, 0.0, 0.0};
     /// What was asked of the gate.
     Wrench command{0.0, 0.0, 0.0};
     /// Contact force on the tool, coupling on the proxy, measured hand force, all about the grip.

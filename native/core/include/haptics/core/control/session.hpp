@@ -2,6 +2,7 @@
 /// One haptic step from device to device: read, map, local model, control, output gate, write.
 
 #include <haptics/core/control/coupling.hpp>
+#include <haptics/core/control/device_care.hpp>
 #include <haptics/core/control/device_port.hpp>
 #include <haptics/core/control/impulse_channel.hpp>
 #include <haptics/core/control/mapping.hpp>
@@ -32,6 +33,8 @@ struct SessionSettings {
     double device_patience{0.02};
     /// Longest window of the velocity estimate, samples, 1 to 63: a longer one is quieter and lags more.
     int velocity_window{2};
+    /// Encoder check, and compensation of the device's own weight, friction and inertia (off by default).
+    DeviceCareSettings care;
     /// Arm by itself as soon as the handle rests in free space. Faults still need a re-arm.
     bool arm_at_start{true};
     /// The tool is held from the start.
@@ -82,6 +85,7 @@ class Session {
     [[nodiscard]] const HapticReport& report() const { return report_; }
     /// Events and details of the last step.
     [[nodiscard]] const StepOutput& output() const { return output_; }
+    [[nodiscard]] const DeviceCare& care() const { return care_; }
     [[nodiscard]] ArmResult arm_result() const { return arm_result_; }
     [[nodiscard]] const SessionSettings& settings() const { return settings_; }
     [[nodiscard]] const Model& model() const { return *model_; }
@@ -113,6 +117,7 @@ class Session {
     std::unique_ptr<Data> data_;
     OutputGate gate_;
     DevicePort& device_;
+    DeviceCare care_;
     VelocityEstimator velocity_;
     EnergyLedger ledger_;
     ImpulseChannel impulses_;
@@ -142,6 +147,8 @@ class Session {
     bool fresh_{false};
     bool missing_{false};
     bool arm_wanted_{false};
+    /// Of the last reading.
+    std::uint32_t homings_{0};
     /// Faults that the last arm() was told to forget.
     Fault forgive_{Fault::none};
     /// Time since the last new sample as the loop counts it, and age of that sample, s.

@@ -90,6 +90,8 @@ class OutputGate {
     [[nodiscard]] const Wrench& applied() const { return applied_; }
     /// Net energy given to the hand within about energy_window, J.
     [[nodiscard]] double recent_energy() const { return energy_; }
+    /// The linkage, where it is known.
+    [[nodiscard]] const std::optional<PantographKinematics>& kinematics() const { return kinematics_; }
     /// The limits in force.
     [[nodiscard]] const SafetyLimits& limits() const { return limits_; }
 

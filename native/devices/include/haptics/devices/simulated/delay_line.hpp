@@ -1,8 +1,6 @@
 #pragma once
 /// Fixed delays, counted in steps or in seconds.
 
-#include <haptics/core/types.hpp>
-
 #include <algorithm>
 #include <cstddef>
 #include <vector>
@@ -10,32 +8,34 @@
 namespace haptics {
 
 /// Gives back what was put in `steps` calls ago; `initial` before that. Allocates in its constructor only.
+template <typename Value>
 class DelayLine {
   public:
     /// `steps` >= 0; 0 hands values straight through.
-    DelayLine(std::size_t steps, const Vec3& initial)
+    DelayLine(std::size_t steps, const Value& initial)
         : values_(steps, initial) {}
 
     /// Puts `value` in, returns the one that comes out.
-    Vec3 push(const Vec3& value) {
+    Value push(const Value& value) {
         if (values_.empty())
             return value;
-        const Vec3 out = values_[next_];
+        const Value out = values_[next_];
         values_[next_] = value;
         next_ = next_ + 1 == values_.size() ? 0 : next_ + 1;
         return out;
     }
 
     /// Makes everything that is under way `value`.
-    void fill(const Vec3& value) { std::fill(values_.begin(), values_.end(), value); }
+    void fill(const Value& value) { std::fill(values_.begin(), values_.end(), value); }
 
   private:
-    std::vector<Vec3> values_;
+    std::vector<Value> values_;
     std::size_t next_{0};
 };
 
-/// Gives back the value that was current `delay` seconds ago; zero before the first. Allocates in its
-/// constructor only.
+/// Gives back the value that was current `delay` seconds ago; a default Value before the first. Allocates in
+/// its constructor only.
+template <typename Value>
 class TimedDelay {
   public:
     /// Values that can be under way at once; the oldest fall out when there are more.
@@ -47,7 +47,7 @@ class TimedDelay {
         , ring_(delay > 0.0 ? k_capacity : 1) {}
 
     /// `value` holds from `time` s on (times must not go back).
-    void put(double time, const Vec3& value) {
+    void put(double time, const Value& value) {
         if (delay_ <= 0.0) {
             current_ = value;
             return;
@@ -61,7 +61,7 @@ class TimedDelay {
     }
 
     /// The value at `time` s, to within `tolerance` s.
-    const Vec3& get(double time, double tolerance) {
+    const Value& get(double time, double tolerance) {
         while (count_ > 0 && ring_[first_].time + delay_ <= time + tolerance) {
             current_ = ring_[first_].value;
             first_ = (first_ + 1) % ring_.size();
@@ -73,13 +73,13 @@ class TimedDelay {
   private:
     struct Entry {
         double time{0.0};
-        Vec3 value{0.0, 0.0, 0.0};
+        Value value{};
     };
     double delay_;
     std::vector<Entry> ring_;
     std::size_t first_{0};
     std::size_t count_{0};
-    Vec3 current_{0.0, 0.0, 0.0};
+    Value current_{};
 };
 
 } // namespace haptics

@@ -24,7 +24,8 @@ enum class EncoderModel {
 /// Where the handle's inertia comes from.
 enum class InertiaModel {
     constant, ///< mass and inertia below, the same in every pose
-    linkage,  ///< links, rotors and handle of the geometry, with their velocity terms
+    linkage,  ///< links, rotors and handle of the geometry, with their velocity terms and joint friction;
+              ///< motors hold their torques between commands, as real ones do
 };
 
 /// Figures of a simulated pantograph.
@@ -35,7 +36,8 @@ struct SimulatedPantographOptions {
     /// Effective mass, kg, 0.001 to 100, and inertia, kg m^2, 1e-7 to 10, of a constant handle.
     double mass{0.3};
     double inertia{3.0e-4};
-    /// Viscous friction at the handle, N s/m, 0 to 1e3, and N m s/rad, 0 to 10.
+    /// Viscous friction at the handle, N s/m, 0 to 1e3, and N m s/rad, 0 to 10 (on top of the geometry's
+    /// joint friction in the linkage model).
     double viscous_friction{1.0};
     double rotation_viscous_friction{1.0e-3};
     /// Coulomb friction at the handle, N, 0 to 100, and N m, 0 to 10; sticks.
@@ -106,6 +108,13 @@ class SimulatedPantograph final : public DevicePort {
     [[nodiscard]] const Wrench& hand_force() const { return hand_force_; }
     /// Force of the motors at the end of the last advance, after delay and limits (N, N, N m).
     [[nodiscard]] const Wrench& motor_force() const { return motor_force_; }
+    /// Lets encoder `axis` slip by `counts` (joint encoders).
+    void slip_encoder(int axis, double counts);
+    /// Finds the encoders' zeros again: undoes every slip.
+    void home() {
+        slip_.setZero();
+        ++homings_;
+    }
     /// What the encoders disagree by in the last reading, rad (joint encoders of a twin; see PoseEstimate).
     [[nodiscard]] double encoder_residual() const { return residual_; }
     /// Simulated time since construction, s.
@@ -116,24 +125,39 @@ class SimulatedPantograph final : public DevicePort {
   private:
     void sub_step(double h);
     void hold_inside(const Pose& before, const Mat3& mobility);
+    void rub_joints(const PantographState& state, const Mat3& mobility, double h);
     [[nodiscard]] double room(const Pose& pose) const;
-    [[nodiscard]] Pose measure();
+    struct Sample {
+        Pose pose{0.0, 0.0, 0.0};
+        JointVector angles{JointVector::Zero()};
+    };
+    /// What the motors were told: a wrench at the handle, and the joint torques for it.
+    struct Command {
+        Wrench wrench{0.0, 0.0, 0.0};
+        JointVector torque{JointVector::Zero()};
+    };
+    [[nodiscard]] Sample exactly() const;
+    [[nodiscard]] Sample measure();
 
     SimulatedPantographOptions options_;
     PantographKinematics kinematics_;
     SimulatedHand hand_;
-    DelayLine command_steps_;
-    TimedDelay command_time_;
-    DelayLine readings_;
+    DelayLine<Command> command_steps_;
+    TimedDelay<Command> command_time_;
+    DelayLine<Sample> readings_;
     std::mt19937_64 random_;
     Pose pose_;
     Twist twist_{0.0, 0.0, 0.0};
-    Wrench command_{0.0, 0.0, 0.0};
+    Pose measured_;
+    JointVector slip_{JointVector::Zero()};
+    /// Friction impulses of the joints in the last sub-step, N m s.
+    JointVector rubbing_{JointVector::Zero()};
     Wrench motor_force_{0.0, 0.0, 0.0};
     Wrench hand_force_{0.0, 0.0, 0.0};
     double time_{0.0};
     double residual_{0.0};
     std::uint64_t sequence_{0};
+    std::uint32_t homings_{0};
     std::uint32_t buttons_{0};
 };
 
