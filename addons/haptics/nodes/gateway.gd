@@ -87,6 +87,20 @@ static func version() -> String:
 	return Engine.get_singleton(_SERVER).get_version() if is_available() else ""
 
 
+## All figures of a pantograph that exists, keys as the properties of [HapticPantographGeometry].
+## Empty where the library is missing.
+static func pantograph_preset(preset: String) -> Dictionary:
+	var native := server()
+	return native.get_pantograph_preset(preset) if native != null else {}
+
+
+## What is wrong with the figures of a pantograph, and what follows from them. Empty where the
+## library is missing.
+static func describe_pantograph(geometry: Dictionary) -> Dictionary:
+	var native := server()
+	return native.describe_pantograph(geometry) if native != null else {}
+
+
 ## False where the library is missing: then nothing else here may be called.
 func is_valid() -> bool:
 	return _world != 0

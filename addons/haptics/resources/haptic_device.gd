@@ -4,6 +4,12 @@ class_name HapticDevice
 extends Resource
 ## What the user holds. Use one of its kinds, as [HapticSimulatedPantograph].
 
+## What of its own weight, friction and inertia is taken off the hand; without one nothing.
+@export var compensation: HapticCompensation:
+	set(value):
+		compensation = value
+		emit_changed()
+
 
 ## As the native side takes it. `unattended`: nobody is there to move it.
 func to_settings(_unattended: bool) -> Dictionary:

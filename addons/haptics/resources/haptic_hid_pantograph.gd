@@ -11,14 +11,10 @@ extends HapticDevice
 # what the safety limits count with: handle, links and a light grip
 const _MOVING_MASS := 0.5
 const _MOVING_INERTIA := 0.0005
-const _GEOMETRIES: PackedStringArray = [
-	"ubc_twin_pantograph", "pantograph_mk2", "haply_2diy_v2", "haply_2diy_v3"
-]
 
-## Its linkage: lengths, masses and modes. The device has to have as many motors.
-@export var geometry: HapticSimulatedPantograph.Geometry = (
-	HapticSimulatedPantograph.Geometry.UBC_TWIN_PANTOGRAPH
-):
+## Its linkage: lengths, masses, modes and friction; without one the UBC twin pantograph. The device
+## has to have as many motors.
+@export var geometry: HapticPantographGeometry:
 	set(value):
 		geometry = value
 		emit_changed()
@@ -52,15 +48,18 @@ const _GEOMETRIES: PackedStringArray = [
 
 
 func to_settings(_unattended: bool) -> Dictionary:
-	return {
+	var settings := {
 		"kind": "hid_pantograph",
-		"geometry": _GEOMETRIES[geometry],
+		"geometry": _linkage(),
 		"vendor_id": vendor_id,
 		"product_id": product_id,
 		"serial": serial,
 		"encoder_tolerance": encoder_tolerance,
 		"max_joint_speed": max_joint_speed,
 	}
+	if compensation != null:
+		settings["compensation"] = compensation.to_settings()
+	return settings
 
 
 func moving_mass(_unattended: bool) -> float:
@@ -69,3 +68,10 @@ func moving_mass(_unattended: bool) -> float:
 
 func moving_inertia(_unattended: bool) -> float:
 	return _MOVING_INERTIA
+
+
+# figures of the linkage, or the name of the preset
+func _linkage() -> Variant:
+	if geometry == null:
+		return "ubc_twin_pantograph"
+	return geometry.to_settings()

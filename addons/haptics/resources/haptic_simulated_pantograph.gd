@@ -5,23 +5,11 @@ extends HapticDevice
 ## A planar pantograph without hardware: handle, friction, encoders, delay, motors, and the hand
 ## that holds it.
 
-## Whose linkage it has.
-enum Geometry {
-	## Two five-bars on one handle: x, y and angle (assumed figures, none are published).
-	UBC_TWIN_PANTOGRAPH,
-	## Pantograph Mk-II: x and y, links 63/75 mm.
-	PANTOGRAPH_MK2,
-	## Haply 2DIY, second version: x and y, links 70/90 mm.
-	HAPLY_2DIY_V2,
-	## Haply 2DIY, third version: x and y, links 70/90 mm.
-	HAPLY_2DIY_V3,
-}
-
 ## Where the handle's inertia comes from.
 enum InertiaModel {
 	## [member mass] and [member inertia], the same everywhere.
 	CONSTANT,
-	## Links, rotors and handle of the linkage.
+	## Links, rotors, handle and joint friction of the linkage; motors hold torques between samples.
 	LINKAGE,
 }
 
@@ -35,14 +23,12 @@ enum EncoderModel {
 	JOINT,
 }
 
-const _GEOMETRIES: PackedStringArray = [
-	"ubc_twin_pantograph", "pantograph_mk2", "haply_2diy_v2", "haply_2diy_v3"
-]
 const _INERTIA_MODELS: PackedStringArray = ["constant", "linkage"]
 const _ENCODER_MODELS: PackedStringArray = ["exact", "handle", "joint"]
 
-## Whose linkage it has.
-@export var geometry: Geometry = Geometry.UBC_TWIN_PANTOGRAPH:
+## Its linkage, motors and encoders; without one the UBC twin pantograph (x, y and angle, assumed
+## figures).
+@export var geometry: HapticPantographGeometry:
 	set(value):
 		geometry = value
 		emit_changed()
@@ -97,6 +83,13 @@ var rotation_viscous_friction: float = 0.001:
 var rotation_coulomb_friction: float = 0.0:
 	set(value):
 		rotation_coulomb_friction = value
+		emit_changed()
+
+## Gravity in the device's plane, m/s², in the axes of the screen (y down), each within 50; zero
+## for a device that lies flat.
+@export_custom(PROPERTY_HINT_NONE, "suffix:m/s²") var gravity: Vector2 = Vector2.ZERO:
+	set(value):
+		gravity = value
 		emit_changed()
 
 @export_group("Encoders and delay")
@@ -157,7 +150,8 @@ var rotation_coulomb_friction: float = 0.0:
 func to_settings(unattended: bool) -> Dictionary:
 	var settings := {
 		"kind": "simulated_pantograph",
-		"geometry": _GEOMETRIES[geometry],
+		"geometry": _linkage(),
+		"gravity": PackedFloat64Array([gravity.x, -gravity.y]),
 		"inertia_model": _INERTIA_MODELS[inertia_model],
 		"mass": mass,
 		"inertia": inertia,
@@ -175,6 +169,8 @@ func to_settings(unattended: bool) -> Dictionary:
 		"measures_force": measures_force,
 		"measures_velocity": measures_velocity,
 	}
+	if compensation != null:
+		settings["compensation"] = compensation.to_settings()
 	var holder := hand_for(unattended)
 	if holder != null:
 		settings["hand"] = holder.to_settings()
@@ -188,12 +184,12 @@ func hand_for(unattended: bool) -> HapticSimulatedHand:
 
 func moving_mass(unattended: bool) -> float:
 	var holder := hand_for(unattended)
-	return mass + (holder.mass if holder != null else 0.0)
+	return _own("mass_kg", mass) + (holder.mass if holder != null else 0.0)
 
 
 func moving_inertia(unattended: bool) -> float:
 	var holder := hand_for(unattended)
-	return inertia + (holder.inertia if holder != null else 0.0)
+	return _own("inertia_kg_m2", inertia) + (holder.inertia if holder != null else 0.0)
 
 
 func follows_mouse(unattended: bool) -> bool:
@@ -204,3 +200,22 @@ func follows_mouse(unattended: bool) -> bool:
 func get_problems(unattended: bool) -> PackedStringArray:
 	var holder := hand_for(unattended)
 	return holder.get_problems() if holder != null else PackedStringArray()
+
+
+# figures of the linkage, or the name of the preset
+func _linkage() -> Variant:
+	if geometry == null:
+		return "ubc_twin_pantograph"
+	return geometry.to_settings()
+
+
+# what the linkage says of itself, or the constant handle's figure
+func _own(figure: String, constant: float) -> float:
+	if inertia_model == InertiaModel.CONSTANT:
+		return constant
+	var linkage := geometry
+	if linkage == null:
+		linkage = HapticPantographGeometry.create(
+			HapticPantographGeometry.Preset.UBC_TWIN_PANTOGRAPH
+		)
+	return linkage.get_figures().get(figure, constant)

@@ -84,6 +84,10 @@ Dictionary DictionaryReader::dictionary(const char* key) {
     return v.get_type() == Variant::NIL ? Dictionary() : v.to<Dictionary>();
 }
 
+Variant DictionaryReader::name_or_dictionary(const char* key) {
+    return take(key, {Variant::STRING, Variant::STRING_NAME, Variant::DICTIONARY}, "a name or a Dictionary");
+}
+
 Array DictionaryReader::array(const char* key) {
     const Variant v = take(key, {Variant::ARRAY}, "an Array");
     return v.get_type() == Variant::NIL ? Array() : v.to<Array>();

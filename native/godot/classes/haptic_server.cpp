@@ -1,3 +1,4 @@
+#include <haptics/classes/geometry_reader.hpp>
 #include <haptics/classes/haptic_server.hpp>
 
 namespace haptics {
@@ -62,6 +63,26 @@ Dictionary HapticServer::get_build_info() const {
     info["architecture"] = k_architecture;
     info["godot_version"] = Engine::get_singleton()->get_version_string();
     return info;
+}
+
+Dictionary HapticServer::get_pantograph_preset(const String& preset) const {
+    PantographGeometry geometry;
+    if (find_preset(preset.utf8(), geometry))
+        return describe_geometry(geometry);
+    print_error("HapticServer: there is no pantograph preset \"" + preset.utf8() +
+                "\". Use ubc_twin_pantograph, pantograph_mk2, haply_2diy_v2 or haply_2diy_v3.");
+    return {};
+}
+
+Dictionary HapticServer::describe_pantograph(const Dictionary& geometry) const {
+    Problems problems;
+    Dictionary device;
+    device["geometry"] = geometry;
+    DictionaryReader reader(device, "", problems);
+    const DeviceGeometry read = read_geometry(reader, problems);
+    Dictionary out = problems.none() ? derived_figures(read.figures) : Dictionary();
+    out["problems"] = problems.to_godot();
+    return out;
 }
 
 int64_t HapticServer::world_create() {
@@ -293,6 +314,8 @@ PackedStringArray HapticServer::world_save_recording(int64_t world, const String
 void HapticServer::_bind_methods() {
     ClassDB::bind_method(D_METHOD("get_version"), &HapticServer::get_version);
     ClassDB::bind_method(D_METHOD("get_build_info"), &HapticServer::get_build_info);
+    ClassDB::bind_method(D_METHOD("get_pantograph_preset", "preset"), &HapticServer::get_pantograph_preset);
+    ClassDB::bind_method(D_METHOD("describe_pantograph", "geometry"), &HapticServer::describe_pantograph);
     ClassDB::bind_method(D_METHOD("world_create"), &HapticServer::world_create);
     ClassDB::bind_method(D_METHOD("world_free", "world"), &HapticServer::world_free);
     ClassDB::bind_method(D_METHOD("world_configure", "world", "settings"), &HapticServer::world_configure);

@@ -133,7 +133,7 @@ void HapticWorld::start(bool realtime, double record_seconds, Problems& problems
         return;
     DeviceOptions device = *device_options_;
     // the thread that writes to a device is as urgent as the loop
-    if (auto* hid = std::get_if<HidPantographOptions>(&device))
+    if (auto* hid = std::get_if<HidPantographOptions>(&device.device))
         hid->priority = std::clamp(settings_.loop.priority, 0, k_max_priority);
     device_ = WorldDevice::make(device, realtime, problems);
     if (device_ == nullptr)
@@ -144,6 +144,8 @@ void HapticWorld::start(bool realtime, double record_seconds, Problems& problems
     SessionSettings session = settings_.session;
     session.device_delay = device_->delay(session);
     session.reading_error = device_->reading_error();
+    session.care = device_options_->care;
+    session.care.compensation.delay = device_->latency(session.step);
     OutputGate gate(settings_.safety, device_->kinematics());
     auto made = std::make_unique<Session>(session, model, gate, device_->port(),
                                           node_to_center(tool_start_, tool_center_));

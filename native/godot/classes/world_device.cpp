@@ -42,6 +42,9 @@ class SimulatedDevice final : public WorldDevice {
     [[nodiscard]] double delay(const SessionSettings& /*session*/) const override {
         return options_.command_delay;
     }
+    [[nodiscard]] double latency(double step) const override {
+        return options_.command_delay + step * (options_.command_delay_steps + options_.reading_delay_steps);
+    }
     [[nodiscard]] Vec3 reading_error() const override {
         switch (options_.encoder_model) {
         case EncoderModel::exact:
@@ -78,6 +81,8 @@ class HidDevice final : public WorldDevice {
     [[nodiscard]] double delay(const SessionSettings& session) const override {
         return device_->delay(session.step, session.velocity_window);
     }
+    // what is left for a loop that has no share in it
+    [[nodiscard]] double latency(double /*step*/) const override { return device_->delay(1.0, 0); }
     void home(Problems& problems) override {
         const std::string problem = device_->home_here();
         if (!problem.empty())
@@ -120,7 +125,7 @@ class HidDevice final : public WorldDevice {
 
 std::unique_ptr<WorldDevice> WorldDevice::make(const DeviceOptions& options, bool realtime,
                                                Problems& problems) {
-    if (const auto* simulated = std::get_if<SimulatedPantographOptions>(&options))
+    if (const auto* simulated = std::get_if<SimulatedPantographOptions>(&options.device))
         return std::make_unique<SimulatedDevice>(*simulated);
     if (!realtime) {
         problems.add(
@@ -130,7 +135,7 @@ std::unique_ptr<WorldDevice> WorldDevice::make(const DeviceOptions& options, boo
     }
     std::string error;
     std::unique_ptr<HidPantograph> device =
-        HidPantograph::open(std::get<HidPantographOptions>(options), error);
+        HidPantograph::open(std::get<HidPantographOptions>(options.device), error);
     if (device == nullptr) {
         problems.add(error);
         return nullptr;

@@ -1,3 +1,4 @@
+#include <haptics/classes/geometry_reader.hpp>
 #include <haptics/classes/world_settings.hpp>
 #include <haptics/core/local_model/validate.hpp>
 
@@ -28,18 +29,34 @@ SafetyLimits read_safety(const Dictionary& from, Problems& problems) {
     return s;
 }
 
-PantographGeometry read_geometry(const std::string& preset, Problems& problems) {
-    if (preset.empty() || preset == "ubc_twin_pantograph")
-        return ubc_twin_pantograph();
-    if (preset == "pantograph_mk2")
-        return pantograph_mk2();
-    if (preset == "haply_2diy_v2")
-        return haply_2diy_v2();
-    if (preset == "haply_2diy_v3")
-        return haply_2diy_v3();
-    problems.add("device.geometry is \"" + preset +
-                 "\", must be one of: ubc_twin_pantograph, pantograph_mk2, haply_2diy_v2, haply_2diy_v3.");
-    return ubc_twin_pantograph();
+CompensationSettings read_compensation(const Dictionary& from, Problems& problems) {
+    CompensationSettings c;
+    DictionaryReader r(from, "compensation.", problems);
+    c.gravity = r.vec2("gravity", c.gravity);
+    c.friction_share = r.number("friction_share", c.friction_share);
+    c.inertia_share = r.number("inertia_share", c.inertia_share);
+    c.velocity_window = r.number("velocity_window", c.velocity_window);
+    c.coulomb_rate = r.number("coulomb_rate", c.coulomb_rate);
+    c.acceleration_bandwidth = r.number("acceleration_bandwidth", c.acceleration_bandwidth);
+    c.energy_reserve = r.number("energy_reserve", c.energy_reserve);
+    r.finish();
+    return c;
+}
+
+// what every kind of pantograph has: its linkage, and what the loop does for it
+PantographGeometry read_linkage(DictionaryReader& r, DeviceCareSettings& care, Problems& problems) {
+    Problems own;
+    DeviceGeometry geometry = read_geometry(r, own);
+    // of a geometry that was found wanting nothing more is said
+    if (!own.none())
+        geometry.figures = ubc_twin_pantograph();
+    care.check_encoders = geometry.check_encoders;
+    care.encoders = geometry.encoders;
+    care.compensation = read_compensation(r.dictionary("compensation"), problems);
+    if (own.none() && care.compensation.active())
+        problems.add(validate(care.compensation, geometry.figures));
+    problems.add(own);
+    return geometry.figures;
 }
 
 std::vector<HandTarget> read_path(const std::vector<double>& table, Problems& problems) {
@@ -77,11 +94,13 @@ SimulatedHandOptions read_hand(const Dictionary& from, Problems& problems) {
     return h;
 }
 
-SimulatedPantographOptions read_simulated_pantograph(const Dictionary& from, Problems& problems) {
+DeviceOptions read_simulated_pantograph(const Dictionary& from, Problems& problems) {
     SimulatedPantographOptions o;
+    DeviceCareSettings care;
     DictionaryReader r(from, "device.", problems);
     r.text("kind", "");
-    o.geometry = read_geometry(r.text("geometry", ""), problems);
+    o.geometry = read_linkage(r, care, problems);
+    o.gravity = r.vec2("gravity", o.gravity);
     o.inertia_model = r.choice("inertia_model", o.inertia_model,
                                {{"constant", InertiaModel::constant}, {"linkage", InertiaModel::linkage}});
     o.mass = r.number("mass", o.mass);
@@ -107,14 +126,19 @@ SimulatedPantographOptions read_simulated_pantograph(const Dictionary& from, Pro
     o.hand = read_hand(r.dictionary("hand"), problems);
     r.finish();
     problems.add(validate(o));
-    return o;
+    if (care.compensation.active() && o.inertia_model == InertiaModel::constant)
+        problems.add("device.compensation compensates links and rotors, but device.inertia_model is "
+                     "constant. Set it to "
+                     "linkage, or take the compensation away.");
+    return {o, care};
 }
 
-HidPantographOptions read_hid_pantograph(const Dictionary& from, Problems& problems) {
+DeviceOptions read_hid_pantograph(const Dictionary& from, Problems& problems) {
     HidPantographOptions o;
+    DeviceCareSettings care;
     DictionaryReader r(from, "device.", problems);
     r.text("kind", "");
-    o.geometry = read_geometry(r.text("geometry", ""), problems);
+    o.geometry = read_linkage(r, care, problems);
     const auto id = [&r](const char* key, int fallback) {
         const double given = r.number(key, fallback);
         return std::abs(given) < 1e9 ? static_cast<int>(given) : 0;
@@ -126,7 +150,7 @@ HidPantographOptions read_hid_pantograph(const Dictionary& from, Problems& probl
     o.stream.max_joint_speed = r.number("max_joint_speed", o.stream.max_joint_speed);
     r.finish();
     problems.add(validate(o));
-    return o;
+    return {o, care};
 }
 
 } // namespace

@@ -21,6 +21,9 @@ class Problems {
         for (const FigureError& e : errors)
             messages_.push_back(e.message());
     }
+    void add(const Problems& others) {
+        messages_.insert(messages_.end(), others.messages_.begin(), others.messages_.end());
+    }
     [[nodiscard]] bool none() const { return messages_.empty(); }
     [[nodiscard]] godot::PackedStringArray to_godot() const {
         godot::PackedStringArray out;
@@ -66,6 +69,8 @@ class DictionaryReader {
     /// A nested Dictionary; empty when missing.
     godot::Dictionary dictionary(const char* key);
     godot::Array array(const char* key);
+    /// Text or a Dictionary; null when missing.
+    godot::Variant name_or_dictionary(const char* key);
     [[nodiscard]] bool has(const char* key) const { return from_.has(key); }
     /// Reports unknown keys.
     void finish();

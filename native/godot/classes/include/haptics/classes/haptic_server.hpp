@@ -29,6 +29,11 @@ class HapticServer : public godot::Object {
     /// What was built and what runs it: version, build_type, compiler, architecture, godot_version.
     godot::Dictionary get_build_info() const;
 
+    /// All figures of a pantograph that exists; empty, after an error, when there is none of that name.
+    godot::Dictionary get_pantograph_preset(const godot::String& preset) const;
+    /// What is wrong with the figures of a pantograph, and what follows from them.
+    godot::Dictionary describe_pantograph(const godot::Dictionary& geometry) const;
+
     /// Indices into world_get_state().
     enum State {
         STATE_STEP,

@@ -26,6 +26,9 @@ class WorldDevice {
     /// Largest error of a reading per coordinate, and delay that it adds to such a loop (s).
     [[nodiscard]] virtual Vec3 reading_error() const = 0;
     [[nodiscard]] virtual double delay(const SessionSettings& session) const = 0;
+    /// How late a force acts and how old a reading is, together, in a loop of `step` s; for the compensation
+    /// (s).
+    [[nodiscard]] virtual double latency(double step) const = 0;
     /// What has to happen on the loop thread before each step; null for nothing.
     virtual StepHook* hook() { return nullptr; }
     /// Where a pointing hand wants the grip (scene frame).

@@ -33,8 +33,11 @@ WorldSettings read_world_settings(const godot::Dictionary& from, Problems& probl
 Surface read_surface(const godot::Dictionary& from, const std::string& place, const Surface& fallback,
                      Problems& problems);
 
-/// A device of any kind.
-using DeviceOptions = std::variant<SimulatedPantographOptions, HidPantographOptions>;
+/// A device of any kind, and what the loop does for it.
+struct DeviceOptions {
+    std::variant<SimulatedPantographOptions, HidPantographOptions> device;
+    DeviceCareSettings care;
+};
 
 /// The device that the key `kind` names: simulated_pantograph (the default) or hid_pantograph.
 DeviceOptions read_device(const godot::Dictionary& from, Problems& problems);
