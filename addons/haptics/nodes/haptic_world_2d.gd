@@ -139,6 +139,14 @@ var coupling_rotation_stiffness: float = 0.0
 var coupling_rotation_damping: float = 0.0
 ## Longest window of the velocity estimate, samples: longer is quieter and lags more.
 @export_range(1, 63) var velocity_window: int = 2
+## Estimates the handle's motion and the force of the hand with a model of the device, and chooses the
+## coupling that goes with it: many times stiffer walls, and four channels without a force sensor. Needs a
+## device whose mass is known to within [member observer_mass_error].
+@export var observer: bool = false
+## Force noise that coarse encoders may cause (standard deviation); more allows a stiffer coupling.
+@export_range(0.01, 1.0, 0.01, "or_greater", "suffix:N") var observer_noise: float = 0.05
+## Largest relative error of the device's mass that has to stay stable.
+@export_range(0.0, 0.5, 0.01) var observer_mass_error: float = 0.25
 
 @export_group("Gravity")
 ## Where the gravity of the tool and of movable bodies around it comes from.
@@ -425,6 +433,9 @@ func to_settings() -> Dictionary:
 		"coupling_damping":
 		PackedFloat64Array([coupling_damping, coupling_damping, coupling_rotation_damping]),
 		"velocity_window": velocity_window,
+		"observer": observer,
+		"observer_noise": observer_noise,
+		"observer_mass_error": observer_mass_error,
 		"mapping_scale": mapping_scale,
 		"mapping_rotation": -mapping_rotation,
 		"arm_at_start": arm_at_start,

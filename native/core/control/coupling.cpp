@@ -32,11 +32,7 @@ CouplingGains default_gains(const Mat3& device_mass, const Mat3& mobility, doubl
     constexpr double k_frequency = 0.29; // w tau
     constexpr double k_damping_ratio = 0.7;
     const double w = k_frequency / (0.5 * (3.0 + velocity_window) * step + std::max(delay, 0.0));
-    // the lightest direction bounds both axes, so that the coupling feels the same all around
-    const double xx = device_mass(0, 0);
-    const double yy = device_mass(1, 1);
-    const double xy = device_mass(0, 1);
-    const double lightest = 0.5 * (xx + yy) - std::sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy);
+    const double lightest = lightest_mass(device_mass);
     const double most_mobile = std::max(mobility(0, 0), mobility(1, 1));
     // a = m_d / (m_d + m_p), written with 1/m_p so that a proxy that cannot move gives 0
     const auto share = [](double mass, double inverse) { return mass * inverse / (1.0 + mass * inverse); };
@@ -47,6 +43,13 @@ CouplingGains default_gains(const Mat3& device_mass, const Mat3& mobility, doubl
     gains.stiffness = w * w * mass.cwiseQuotient(loop_gain);
     gains.damping = 2.0 * k_damping_ratio * w * mass.cwiseQuotient(loop_gain);
     return gains;
+}
+
+double lightest_mass(const Mat3& device_mass) {
+    const double xx = device_mass(0, 0);
+    const double yy = device_mass(1, 1);
+    const double xy = device_mass(0, 1);
+    return 0.5 * (xx + yy) - std::sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy);
 }
 
 Mat3 combined_mass(const Mat3& grip_mobility, const Mat3& device_mass) {

@@ -11,6 +11,7 @@
 // (7) with the proxy's own inertia gives the same for equal masses, throws a device that is lighter than the
 // proxy back, and hardly stops one that is heavier. So M_d dv is what the hand receives.
 
+#include <haptics/core/control/coupling_design.hpp>
 #include <haptics/core/control/session.hpp>
 
 #include <algorithm>
@@ -60,6 +61,13 @@ std::vector<FigureError> validate(const SessionSettings& s) {
     check.range("device_patience", s.device_patience, 0.002, 1.0, "s", "0.02 is the default.");
     check.range("velocity_window", static_cast<double>(s.velocity_window), 1.0, 63.0, "samples",
                 "2 is the default.");
+    check.range("observer.delay", s.observer.delay, 0.0, HandleObserver::k_most_delay * s.step, "s",
+                "The time from a reading to the force that answers it.");
+    check.range("observer.bandwidth", s.observer.bandwidth, 0.0, 1e5, "rad/s", "0 chooses it.");
+    check.range("observer.rotation_bandwidth", s.observer.rotation_bandwidth, 0.0, 1e5, "rad/s",
+                "0 chooses it.");
+    check.range("observer.noise", s.observer.noise, 0.001, 10.0, "N", "0.05 is the default.");
+    check.range("observer.mass_error", s.observer.mass_error, 0.0, 0.5, "", "0.25 is the default.");
     check.range("device_delay", s.device_delay, 0.0, 1.0, "s", "Most devices add less than 0.001 s.");
     return check.take();
 }
@@ -88,15 +96,51 @@ Session::Session(const SessionSettings& settings, const Model& model, const Outp
     mobility_ = grip_mobility(*model_, *data_);
     read_device();
     device_mass_ = settings_.mapping.mass_to_scene(device_.handle_mass(reading_.pose));
-    gains_ = settings_.gains;
-    if (gains_.stiffness.isZero(0.0) && gains_.damping.isZero(0.0))
-        gains_ = default_gains(device_mass_, loop_mobility(), settings_.step, settings_.device_delay,
-                               settings_.velocity_window);
+    choose_gains();
     hold(settings_.hold_at_start);
     report_.grip = grip_pose(data_->grip, data_->pose);
     report_.proxy = data_->pose;
     report_.device = handle_ + grab_offset_;
     report_.held = held_;
+}
+
+// in the device's axes; the scene sees forces divided by the scale and motions multiplied by it
+void Session::choose_gains() {
+    gains_ = settings_.gains;
+    const bool chosen = !gains_.stiffness.isZero(0.0) || !gains_.damping.isZero(0.0);
+    const ObserverSettings& wanted = settings_.observer;
+    if (!wanted.enabled) {
+        if (!chosen)
+            gains_ = default_gains(device_mass_, loop_mobility(), settings_.step, settings_.device_delay,
+                                   settings_.velocity_window);
+        return;
+    }
+    const Mat3 mass = device_.handle_mass(reading_.pose);
+    LoopFigures figures;
+    figures.step = settings_.step;
+    figures.delay = wanted.delay;
+    figures.mass_error = wanted.mass_error;
+    figures.four_channel = settings_.coupling == Coupling::four_channel;
+    figures.mass = lightest_mass(mass);
+    figures.quantum = 2.0 * settings_.reading_error.head<2>().maxCoeff();
+    figures.noise = wanted.noise;
+    const CouplingDesign translation = design_coupling(figures);
+    figures.mass = mass(2, 2);
+    figures.quantum = 2.0 * settings_.reading_error.z();
+    figures.noise = wanted.noise * ObserverSettings::k_arm;
+    figures.hand_stiffness = 2.0;
+    figures.hand_damping = 0.02;
+    const CouplingDesign rotation = design_coupling(figures);
+    if (!chosen) {
+        const double scale = settings_.mapping.scale * settings_.mapping.scale;
+        gains_.stiffness =
+            Vec3(translation.stiffness / scale, translation.stiffness / scale, rotation.stiffness);
+        gains_.damping = Vec3(translation.damping / scale, translation.damping / scale, rotation.damping);
+    }
+    const double along = wanted.bandwidth > 0.0 ? wanted.bandwidth : translation.bandwidth;
+    const double around = wanted.rotation_bandwidth > 0.0 ? wanted.rotation_bandwidth : rotation.bandwidth;
+    observer_.emplace(settings_.step, wanted.delay, Vec3(along, along, around));
+    observer_->sent(Wrench::Zero(), mass);
 }
 
 void Session::hold(bool held) {
@@ -149,7 +193,7 @@ void Session::shut_off() {
 // Both force channels or none: the environment's alone would let the hand feel the contact once fed forward
 // and once through the spring.
 bool Session::feeds_forward() const {
-    return settings_.coupling == Coupling::four_channel && reading_.has_hand_force;
+    return settings_.coupling == Coupling::four_channel && (reading_.has_hand_force || observer_);
 }
 
 // a linkage can be light in some pose and stretched in another: its gains are those of the lightest proxy
@@ -180,6 +224,8 @@ void Session::read_device() {
         }
         gate_.set_homed(reading_.homed);
         velocity_.reset();
+        if (observer_)
+            observer_->reset();
         handle_velocity_.setZero();
     }
     follow_handle();
@@ -189,8 +235,11 @@ void Session::read_device() {
         grasping_ = 0.0;
         freeze_offset();
     }
-    hand_force_ = reading_.has_hand_force ? settings_.mapping.wrench_to_scene(reading_.hand_force)
-                                          : Wrench(Wrench::Zero());
+    hand_force_.setZero();
+    if (reading_.has_hand_force)
+        hand_force_ = settings_.mapping.wrench_to_scene(reading_.hand_force);
+    else if (observer_)
+        hand_force_ = settings_.mapping.wrench_to_scene(observer_->hand_force());
 }
 
 void Session::follow_handle() {
@@ -202,8 +251,15 @@ void Session::follow_handle() {
         silent_for_ = 0.0;
         age_ = reading_.age;
         care_.take(reading_, interval);
+        if (observer_)
+            observer_->correct(reading_.pose);
         handle_velocity_ = map.twist_to_scene(
             reading_.has_velocity ? reading_.velocity : velocity_.update(reading_.pose, interval));
+    }
+    if (observer_ && observer_->started()) {
+        handle_ = map.to_scene(observer_->pose());
+        handle_velocity_ = map.twist_to_scene(observer_->twist());
+        return;
     }
     handle_ = map.to_scene(reading_.pose);
     if (age_ > 0.0)
@@ -246,6 +302,18 @@ void Session::run_model() {
     hand.target_velocity = handle_velocity_;
     hand.stiffness = gains_.stiffness;
     hand.damping = gains_.damping;
+    if (observer_) {
+        // the handle yields to the force while it acts (coupling_design.cpp)
+        const Mat3 yielding = device_mass_.inverse();
+        hand.target = settings_.mapping.to_scene(observer_->pose_ahead()) + grab_offset_;
+        hand.target_velocity = settings_.mapping.twist_to_scene(observer_->twist_ahead());
+        for (int i = 0; i < 3; ++i) {
+            const SolverGains solver =
+                solver_gains(gains_.stiffness(i), gains_.damping(i), yielding(i, i), h);
+            hand.stiffness(i) = solver.stiffness;
+            hand.damping(i) = solver.damping;
+        }
+    }
     hand.max_force = gate_.limits().max_force * settings_.mapping.scale;
     hand.max_torque = gate_.limits().max_torque;
     hand.share = share_ * grasp_;
@@ -307,6 +375,8 @@ void Session::step() {
     share_ = pass_fraction(wanted, gated, share_);
     care_.sent(wanted, gated.applied);
     device_.write(gated.applied);
+    if (observer_)
+        observer_->sent(gated.applied, device_.handle_mass(reading_.pose));
     // the handle felt all forces since its last sample; the compensation keeps its own books
     force_sum_ += gated.applied - care_.applied();
     force_count_ += 1.0;

@@ -146,6 +146,8 @@ void HapticWorld::start(bool realtime, double record_seconds, Problems& problems
     session.reading_error = device_->reading_error();
     session.care = device_options_->care;
     session.care.compensation.delay = device_->latency(session.step);
+    session.observer.delay =
+        std::min(device_->latency(session.step), HandleObserver::k_most_delay * session.step);
     OutputGate gate(settings_.safety, device_->kinematics());
     auto made = std::make_unique<Session>(session, model, gate, device_->port(),
                                           node_to_center(tool_start_, tool_center_));

@@ -172,6 +172,9 @@ WorldSettings read_world_settings(const Dictionary& from, Problems& problems) {
     w.session.mapping.rotation = r.number("mapping_rotation", w.session.mapping.rotation);
     w.session.mapping.offset = r.vec3("mapping_offset", w.session.mapping.offset);
     w.session.velocity_window = static_cast<int>(r.number("velocity_window", w.session.velocity_window));
+    w.session.observer.enabled = r.flag("observer", w.session.observer.enabled);
+    w.session.observer.noise = r.number("observer_noise", w.session.observer.noise);
+    w.session.observer.mass_error = r.number("observer_mass_error", w.session.observer.mass_error);
     w.session.arm_at_start = r.flag("arm_at_start", w.session.arm_at_start);
     w.session.hold_at_start = r.flag("hold_at_start", w.session.hold_at_start);
     w.model.contact_mode =

@@ -141,7 +141,8 @@ TEST_SUITE("pantograph kinematics") {
         int all = 0;
         for (int trial = 0; trial < 500; ++trial) {
             const Pose pose = random_pose(kinematics, random);
-            const Eigen::Vector4d unexplained = shared::kernel(kinematics.locate(pose).rates.transpose()).col(0);
+            const Eigen::Vector4d unexplained =
+                shared::kernel(kinematics.locate(pose).rates.transpose()).col(0);
             for (int axis = 0; axis < 4; ++axis) {
                 JointVector angles;
                 kinematics.inverse(pose, angles);

@@ -1,6 +1,6 @@
 #pragma once
-/// Dense decompositions of any size for tests and benchmarks, compiled once: Eigen's take half a minute in each file
-/// that names one.
+/// Dense decompositions of any size for tests and benchmarks, compiled once: Eigen's take half a minute in
+/// each file that names one.
 
 #include <Eigen/Core>
 

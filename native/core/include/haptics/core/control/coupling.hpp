@@ -39,6 +39,9 @@ struct CouplingGains {
 CouplingGains default_gains(const Mat3& device_mass, const Mat3& mobility, double step, double delay,
                             int velocity_window);
 
+/// Mass of the handle in the direction in which it is lightest, kg; the coupling feels the same all around.
+double lightest_mass(const Mat3& device_mass);
+
 /// S = (J_h D^-1 J_h^T + M_d^-1)^-1: what device and proxy weigh together, seen at the grip. Finite where J_h
 /// D^-1 J_h^T is singular.
 Mat3 combined_mass(const Mat3& grip_mobility, const Mat3& device_mass);

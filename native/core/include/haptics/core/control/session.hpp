@@ -4,6 +4,7 @@
 #include <haptics/core/control/coupling.hpp>
 #include <haptics/core/control/device_care.hpp>
 #include <haptics/core/control/device_port.hpp>
+#include <haptics/core/control/handle_observer.hpp>
 #include <haptics/core/control/impulse_channel.hpp>
 #include <haptics/core/control/mapping.hpp>
 #include <haptics/core/control/report.hpp>
@@ -13,9 +14,27 @@
 #include <haptics/core/safety/velocity_estimator.hpp>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace haptics {
+
+/// Estimates the handle's motion and the hand's force with a model of the device (handle_observer.hpp), and
+/// chooses the coupling that goes with it (coupling_design.hpp).
+struct ObserverSettings {
+    bool enabled{false};
+    /// From the motion that a reading shows to the start of the force computed from it, s, 0 to 63 steps.
+    double delay{0.0};
+    /// How fast the estimate follows in translation and in rotation, rad/s; 0 chooses it.
+    double bandwidth{0.0};
+    double rotation_bandwidth{0.0};
+    /// Force noise that coarse encoders may cause (standard deviation), N, 0.001 to 10; torques k_arm of it.
+    double noise{0.05};
+    /// Largest relative error of the device's mass that the coupling has to bear, 0 to 0.5.
+    double mass_error{0.25};
+    /// Arm that turns noise of force into noise of torque, m.
+    static constexpr double k_arm = 0.03;
+};
 
 struct SessionSettings {
     /// Period of the loop, s, 1e-4 to 4e-3.
@@ -25,7 +44,8 @@ struct SessionSettings {
     Mapping mapping;
     /// Coupling gains; all zero chooses default_gains.
     CouplingGains gains;
-    /// Delay that the device adds, s, >= 0; used to choose the gains.
+    ObserverSettings observer;
+    /// Delay that the device adds, s, >= 0; used to choose the gains without an observer.
     double device_delay{0.0};
     /// Largest reading error per coordinate (half an encoder step), m, m, rad; used to estimate velocity.
     Vec3 reading_error{5e-6, 5e-6, 5e-5};
@@ -90,6 +110,8 @@ class Session {
     [[nodiscard]] const SessionSettings& settings() const { return settings_; }
     [[nodiscard]] const Model& model() const { return *model_; }
     [[nodiscard]] const CouplingGains& gains() const { return gains_; }
+    /// Null while none is enabled.
+    [[nodiscard]] const HandleObserver* observer() const { return observer_ ? &*observer_ : nullptr; }
     /// Handle pose at which the grip would be at `grip` (device frame): where a pointing hand has to go.
     [[nodiscard]] Pose handle_for(const Pose& grip) const {
         return settings_.mapping.to_device(grip - grab_offset_);
@@ -99,6 +121,7 @@ class Session {
     [[nodiscard]] const LinkageVector& configuration() const { return data_->linkage.position; }
 
   private:
+    void choose_gains();
     [[nodiscard]] bool feeds_forward() const;
     [[nodiscard]] Mat3 loop_mobility() const;
     [[nodiscard]] double stored_energy() const;
@@ -119,6 +142,7 @@ class Session {
     DevicePort& device_;
     DeviceCare care_;
     VelocityEstimator velocity_;
+    std::optional<HandleObserver> observer_;
     EnergyLedger ledger_;
     ImpulseChannel impulses_;
     CouplingGains gains_;

@@ -1,0 +1,92 @@
+#pragma once
+/// A rectangular tool in front of the paper's wall, held through a device whose mass the controller may have
+/// wrong and whose hand force it has to observe.
+
+#include <haptics/core/control/session.hpp>
+#include <haptics/devices/simulated/simulated_pantograph.hpp>
+#include <haptics/shared/paper_wall.hpp>
+
+#include <memory>
+
+namespace haptics::shared {
+
+/// A device with another mass than it says.
+class MisjudgedDevice final : public DevicePort {
+  public:
+    MisjudgedDevice(SimulatedPantograph& device, double ratio)
+        : device_(device)
+        , ratio_(ratio) {}
+    bool read(DeviceReading& reading) override { return device_.read(reading); }
+    void write(const Wrench& force) override { device_.write(force); }
+    void advance(double dt) override { device_.advance(dt); }
+    [[nodiscard]] Mat3 handle_mass(const Pose& pose) const override {
+        return ratio_ * device_.handle_mass(pose);
+    }
+    [[nodiscard]] int freedoms() const override { return device_.freedoms(); }
+
+  private:
+    SimulatedPantograph& device_;
+    double ratio_;
+};
+
+struct ObservedToolOptions {
+    double rate_hz{1000.0};
+    double tool_mass{0.3};
+    /// Mass that the controller assumes over the true one.
+    double mass_ratio{1.0};
+    Coupling coupling{Coupling::four_channel};
+    Integrator integrator{Integrator::linearly_implicit};
+    double encoder{10e-6};
+    int delay_steps{1};
+    bool observer{true};
+    double noise{0.05};
+    /// Distance from tool to wall at the start, m, stiffness of the wall, N/m, its damping, N s/m.
+    double distance{0.005};
+    double wall{15000.0};
+    double wall_damping{20.0};
+    Vec2 gravity{0.0, 0.0};
+    CouplingGains gains;
+    SimulatedHandOptions hand{pushing_hand(Wrench(0.0, -2.0, 0.0), 0.5)};
+};
+
+struct ObservedTool {
+    explicit ObservedTool(const ObservedToolOptions& o) {
+        SimulatedPantographOptions d;
+        d.mass = 0.3;
+        d.inertia = 3e-4;
+        d.viscous_friction = 1.0;
+        d.encoder_model = o.encoder > 0.0 ? EncoderModel::handle : EncoderModel::exact;
+        d.encoder_resolution = Vec3(o.encoder, o.encoder, 10.0 * o.encoder);
+        d.command_delay_steps = o.delay_steps;
+        d.limit_motors = false;
+        d.sub_step = 1e-4;
+        d.hand = o.hand;
+        device = std::make_unique<SimulatedPantograph>(d);
+        port = std::make_unique<MisjudgedDevice>(*device, o.mass_ratio);
+        Model model = box_tool(o.tool_mass);
+        model.settings.integrator = o.integrator;
+        SessionSettings s;
+        s.step = 1.0 / o.rate_hz;
+        s.coupling = o.coupling;
+        s.gains = o.gains;
+        s.reading_error = Vec3(0.5 * o.encoder, 0.5 * o.encoder, 5.0 * o.encoder);
+        s.observer.enabled = o.observer;
+        s.observer.delay = o.delay_steps * s.step;
+        s.observer.noise = o.noise;
+        SafetyLimits limits;
+        limits.max_force = 30.0;
+        OutputGate gate(limits, device->kinematics());
+        gate.set_homed(true);
+        session = std::make_unique<Session>(s, model, gate, *port, Pose(0.0, 0.01 + o.distance, 0.0));
+        auto scene = floor_of(1);
+        scene->gravity = o.gravity;
+        scene->bodies.body[0].surface.stiffness = o.wall;
+        scene->bodies.body[0].surface.damping = o.wall_damping;
+        session->take(*scene);
+    }
+    std::unique_ptr<SimulatedPantograph> device;
+    std::unique_ptr<MisjudgedDevice> port;
+    std::unique_ptr<Session> session;
+};
+
+} // namespace haptics::shared
