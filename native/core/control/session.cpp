@@ -33,10 +33,13 @@ double pass_fraction(const Wrench& command, const GateOutput& gate, double last)
 // a handle is moved on by its velocity for so long, s; beyond that the velocity says too little
 constexpr double k_most_ahead = 0.003;
 
-double spring_energy(const Vec3& stiffness, const Wrench& force) {
+// of a spring that gives at most `most`
+double spring_energy(const Vec3& stiffness, const Vec3& stretch, const Wrench& most) {
     double energy = 0.0;
-    for (int i = 0; i < 3; ++i)
-        energy += stiffness(i) > 0.0 ? 0.5 * force(i) * force(i) / stiffness(i) : 0.0;
+    for (int i = 0; i < 3; ++i) {
+        const double force = std::min(stiffness(i) * std::abs(stretch(i)), most(i));
+        energy += stiffness(i) > 0.0 ? 0.5 * force * force / stiffness(i) : 0.0;
+    }
     return energy;
 }
 
@@ -90,7 +93,8 @@ Session::Session(const SessionSettings& settings, const Model& model, const Outp
     , gate_(gate)
     , device_(device)
     , care_(settings.care, gate, settings.reading_error)
-    , velocity_(settings.reading_error, settings.velocity_window) {
+    , velocity_(settings.reading_error, settings.velocity_window)
+    , passivity_(settings.reading_error) {
     reset(*model_, *data_, start);
     arm_wanted_ = settings.arm_at_start;
     mobility_ = grip_mobility(*model_, *data_);
@@ -204,7 +208,10 @@ Mat3 Session::loop_mobility() const {
 }
 
 double Session::stored_energy() const {
-    return output_.stored_energy + (grasp_ > 0.0 ? spring_energy(gains_.stiffness, output_.coupling) : 0.0);
+    const double force = gate_.limits().max_force * settings_.mapping.scale;
+    const Vec3 stretch = handle_ + grab_offset_ - grip_pose(data_->grip, data_->pose);
+    return output_.stored_energy +
+           grasp_ * spring_energy(gains_.stiffness, stretch, Wrench(force, force, gate_.limits().max_torque));
 }
 
 void Session::read_device() {
@@ -284,6 +291,7 @@ void Session::try_to_arm(Fault device) {
         return;
     forgive_ = Fault::none;
     ledger_.reset(reading_.pose, stored_energy());
+    passivity_.reset();
 }
 
 void Session::run_model() {
@@ -355,7 +363,8 @@ Wrench Session::command() {
 void Session::step() {
     read_device();
     if (fresh_) {
-        ledger_.book(reading_.pose, stored_energy(), output_.source_work);
+        if (gate_.armed())
+            ledger_.book(reading_.pose, stored_energy(), output_.source_work);
         force_sum_.setZero();
         force_count_ = 0.0;
     }
@@ -368,6 +377,9 @@ void Session::step() {
     if (gate_.armed())
         wanted = settings_.mapping.wrench_to_device(force) + care_.wrench();
     const Twist device_twist = settings_.mapping.twist_to_device(handle_velocity_);
+    if (settings_.passivity_control && gate_.armed())
+        wanted += passivity_.damp(ledger_.created(), wanted, device_twist, device_.handle_mass(reading_.pose),
+                                  settings_.step);
     const Fault device = device_faults();
     gate_.raise(device);
     try_to_arm(device);

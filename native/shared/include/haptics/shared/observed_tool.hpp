@@ -39,6 +39,7 @@ struct ObservedToolOptions {
     double encoder{10e-6};
     int delay_steps{1};
     bool observer{true};
+    bool passivity{false};
     double noise{0.05};
     /// Distance from tool to wall at the start, m, stiffness of the wall, N/m, its damping, N s/m.
     double distance{0.005};
@@ -73,6 +74,7 @@ struct ObservedTool {
         s.observer.enabled = o.observer;
         s.observer.delay = o.delay_steps * s.step;
         s.observer.noise = o.noise;
+        s.passivity_control = o.passivity;
         SafetyLimits limits;
         limits.max_force = 30.0;
         OutputGate gate(limits, device->kinematics());

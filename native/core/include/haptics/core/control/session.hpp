@@ -11,6 +11,7 @@
 #include <haptics/core/local_model/local_model.hpp>
 #include <haptics/core/safety/energy_ledger.hpp>
 #include <haptics/core/safety/output_gate.hpp>
+#include <haptics/core/safety/passivity_controller.hpp>
 #include <haptics/core/safety/velocity_estimator.hpp>
 
 #include <memory>
@@ -45,6 +46,8 @@ struct SessionSettings {
     /// Coupling gains; all zero chooses default_gains.
     CouplingGains gains;
     ObserverSettings observer;
+    /// Damps the handle while the loop has created energy.
+    bool passivity_control{false};
     /// Delay that the device adds, s, >= 0; used to choose the gains without an observer.
     double device_delay{0.0};
     /// Largest reading error per coordinate (half an encoder step), m, m, rad; used to estimate velocity.
@@ -110,6 +113,8 @@ class Session {
     [[nodiscard]] const SessionSettings& settings() const { return settings_; }
     [[nodiscard]] const Model& model() const { return *model_; }
     [[nodiscard]] const CouplingGains& gains() const { return gains_; }
+    [[nodiscard]] const EnergyLedger& ledger() const { return ledger_; }
+    [[nodiscard]] const PassivityController& passivity() const { return passivity_; }
     /// Null while none is enabled.
     [[nodiscard]] const HandleObserver* observer() const { return observer_ ? &*observer_ : nullptr; }
     /// Handle pose at which the grip would be at `grip` (device frame): where a pointing hand has to go.
@@ -144,6 +149,7 @@ class Session {
     VelocityEstimator velocity_;
     std::optional<HandleObserver> observer_;
     EnergyLedger ledger_;
+    PassivityController passivity_;
     ImpulseChannel impulses_;
     CouplingGains gains_;
     DeviceReading reading_;
