@@ -10,8 +10,11 @@ const TELEPORT_SPEED := 5.0
 ## Slower than this stands still, m/s and rad/s.
 const REST_SPEED := 1e-7
 
-## The body read, always valid while this is in use.
-var node: CollisionObject2D
+# a scale that is off by less is noise of single precision, and no reason to read the shapes again
+const _SCALE_STEP := Vector2(1e-5, 1e-5)
+
+## The body read; may be gone, see is_present().
+var node: Node2D
 ## Its number on the native side, above 0.
 var id: int
 ## Content of the last description that was handed over.
@@ -22,29 +25,67 @@ var is_usable := false
 var is_dirty := true
 ## What is wrong with it, from the last description.
 var problems: PackedStringArray = []
+## Distance from the node's origin to the farthest point of its shapes, m, from the last
+## description.
+var extent := 0.0
 
 var _units: HapticUnits
 var _pose: PackedFloat64Array = []
 var _velocity: PackedFloat64Array = [0.0, 0.0, 0.0]
 var _tick := -1
+var _print := 0
+var _seen_at := Transform2D()
+var _seen_frame := -1
 
 
-func _init(body: CollisionObject2D, number: int, units: HapticUnits) -> void:
+func _init(body: Node2D, number: int, units: HapticUnits) -> void:
 	node = body
 	id = number
 	_units = units
 
 
+## True while its node lives in a scene.
+func is_present() -> bool:
+	return is_instance_valid(node) and node.is_inside_tree()
+
+
 ## Everything about the body that rarely changes, as the native side takes it.
 func describe(fallback: HapticSurface) -> Dictionary:
 	var reader := ShapeReader.new(_units)
-	reader.read(node, scaling())
+	_read_shapes(reader)
 	problems = reader.problems
+	extent = reader.extent()
 	return {
 		"kind": kind(),
-		"surface": SurfaceReader.find(node, fallback).to_settings(),
+		"surface": surface(fallback).to_settings(),
 		"shapes": reader.shapes,
 	}
+
+
+## How it feels.
+func surface(fallback: HapticSurface) -> HapticSurface:
+	return SurfaceReader.find(node, fallback)
+
+
+## The resources it is made of, whose changes matter.
+func parts(fallback: HapticSurface) -> Array[Resource]:
+	var found: Array[Resource] = [surface(fallback)]
+	var body := node as CollisionObject2D
+	if body == null:
+		return found
+	for owner_id: int in body.get_shape_owners():
+		for index: int in body.shape_owner_get_shape_count(owner_id):
+			found.append(body.shape_owner_get_shape(owner_id, index))
+	return found
+
+
+## Marks the body when something that has no signal changed: a shape that was added, moved, switched
+## off or exchanged, another surface, another scale.
+func look() -> void:
+	var now := _features().hash()
+	if now != _print:
+		_print = now
+		is_dirty = true
 
 
 ## "fixed", "kinematic" or "movable".
@@ -67,11 +108,39 @@ func take_impulse(_x: float, _y: float, _angular: float, _time_scale: float) -> 
 func scaling() -> Transform2D:
 	var whole := node.global_transform
 	whole.origin = Vector2.ZERO
-	return Transform2D(-whole.get_rotation(), Vector2.ZERO) * whole
+	var left := Transform2D(-whole.get_rotation(), Vector2.ZERO) * whole
+	left.x = left.x.snapped(_SCALE_STEP)
+	left.y = left.y.snapped(_SCALE_STEP)
+	return left
+
+
+func _read_shapes(reader: ShapeReader) -> void:
+	reader.read(node as CollisionObject2D, scaling())
+
+
+# what the description depends on
+func _features() -> Array:
+	var own := SurfaceReader.find_own(node)
+	var features: Array = [kind(), scaling(), own.get_instance_id() if own != null else 0]
+	var body := node as CollisionObject2D
+	for owner_id: int in body.get_shape_owners():
+		features.append(owner_id)
+		features.append(body.is_shape_owner_disabled(owner_id))
+		features.append(body.is_shape_owner_one_way_collision_enabled(owner_id))
+		features.append(body.shape_owner_get_transform(owner_id))
+		for index: int in body.shape_owner_get_shape_count(owner_id):
+			features.append(body.shape_owner_get_shape(owner_id, index).get_instance_id())
+	return features
 
 
 # Godot reports no velocity for what a script moves, and the server's transform lags: difference.
 func _follow(tick: int, seconds: float) -> void:
+	if _tick == tick - 1 and _seen_frame == _units.frame and _seen_at == node.global_transform:
+		_velocity.fill(0.0)
+		_tick = tick
+		return
+	_seen_at = node.global_transform
+	_seen_frame = _units.frame
 	var now := _read_pose()
 	if _tick == tick - 1 and seconds > 0.0:
 		for i: int in 3:

@@ -9,7 +9,10 @@ extends RefCounted
 
 ## Scale, px/m, above 0.
 var pixels_per_meter: float
+## Grows whenever the world node's pose changes.
+var frame := 0
 
+var _frame_pose := Transform2D.IDENTITY
 var _origin_x := 0.0
 var _origin_y := 0.0
 var _angle := 0.0
@@ -17,16 +20,20 @@ var _cos := 1.0
 var _sin := 0.0
 
 
-func _init(scale: float = 4000.0, frame: Transform2D = Transform2D.IDENTITY) -> void:
+func _init(scale: float = 4000.0, pose: Transform2D = Transform2D.IDENTITY) -> void:
 	pixels_per_meter = scale
-	set_frame(frame)
+	set_frame(pose)
 
 
 ## Takes the pose of the world node over. Its scale is not: a scaled world is refused.
-func set_frame(frame: Transform2D) -> void:
-	_origin_x = frame.origin.x
-	_origin_y = frame.origin.y
-	_angle = frame.get_rotation()
+func set_frame(pose: Transform2D) -> void:
+	if pose == _frame_pose:
+		return
+	frame += 1
+	_frame_pose = pose
+	_origin_x = pose.origin.x
+	_origin_y = pose.origin.y
+	_angle = pose.get_rotation()
 	_cos = cos(_angle)
 	_sin = sin(_angle)
 

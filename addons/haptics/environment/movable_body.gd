@@ -54,6 +54,14 @@ func scaling() -> Transform2D:
 	return Transform2D.IDENTITY
 
 
+func _features() -> Array:
+	var body := node as RigidBody2D
+	var features := super._features()
+	features.append_array([body.mass, body.inertia, body.center_of_mass_mode, body.center_of_mass])
+	features.append_array([body.freeze, body.freeze_mode, body.lock_rotation])
+	return features
+
+
 # 0 lets the native side compute it from the shapes
 func _inertia(body: RigidBody2D) -> float:
 	if body.lock_rotation:

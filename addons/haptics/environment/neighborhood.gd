@@ -4,155 +4,139 @@ extends RefCounted
 ## once (and again when it changes), and hands their poses over at every physics tick.
 
 const Gateway := preload("../nodes/gateway.gd")
+const BodyFinder := preload("body_finder.gd")
 const BodyReader := preload("body_reader.gd")
-const FixedBody := preload("fixed_body.gd")
-const KinematicBody := preload("kinematic_body.gd")
-const MovableBody := preload("movable_body.gd")
+const Reach := preload("reach.gd")
 
-# the engine cuts lists of results silently: ask again with more room when one comes back full
-const _FIRST_RESULTS := 64
-const _MOST_RESULTS := 4096
-# what the tool may gain in speed within a tick, m/s, and what is looked around in any case, m
-const _SPEED_GAIN := 0.5
-const _MARGIN := 0.01
+# every body that stays near is described anew once in so many ticks, whatever was noticed
+const _TICKS_TO_DESCRIBE := 240
 
 ## Surface of bodies that have none.
 var default_surface: HapticSurface
 ## Bodies in the last snapshot.
 var near_count := 0
+## Convex pieces within reach that did not fit into it.
+var left_out := 0
+## Where was looked around last, canvas: x, y, radius (px).
+var discs: Array[Vector3] = []
 
 var _native: Gateway
 var _units: HapticUnits
-var _query := PhysicsShapeQueryParameters2D.new()
-var _circle := CircleShape2D.new()
-# by instance id of the node, and by number
-var _readers: Dictionary[int, BodyReader] = {}
-var _numbers: Dictionary[int, BodyReader] = {}
-var _next_number := 1
-var _most_results := _FIRST_RESULTS
+var _finder: BodyFinder
+# numbers of bodies that are made of a resource, by its instance id
+var _watchers: Dictionary[int, Dictionary] = {}
 var _tick := 0
 
 
 func _init(native: Gateway, units: HapticUnits) -> void:
 	_native = native
 	_units = units
-	_query.shape = _circle
-	_query.collide_with_areas = false
+	_finder = BodyFinder.new(units, _native.remove_body)
 
 
-## How far around the tool's origin to look (px): its size and how far it can get until the next
-## snapshot counts, two ticks for safety.
-func reach(extent: float, speed: float, tick_seconds: float) -> float:
-	return extent + _units.to_pixels((speed + _SPEED_GAIN) * 2.0 * tick_seconds + _MARGIN)
-
-
-## Publishes the bodies within `radius` px of `center` (canvas) that `mask` selects. Returns what
-## is wrong, each with the path of its node.
+## Publishes what lies within the discs (canvas: x, y, radius in px) and what `mask` selects.
+## Returns
+## what is wrong, each with the path of its node.
 func publish(
 	world_2d: World2D,
-	center: Vector2,
-	radius: float,
+	around: Array[Vector3],
 	mask: int,
 	tick_seconds: float,
 	time_scale: float,
 	gravity: PackedFloat64Array
 ) -> PackedStringArray:
 	_tick += 1
+	_finder.forget_gone()
 	var problems := PackedStringArray()
 	var ids := PackedInt64Array()
 	var states := PackedFloat64Array()
-	_circle.radius = radius
-	_query.transform = Transform2D(0.0, center)
-	_query.collision_mask = mask
-	for reader: BodyReader in _find(world_2d.direct_space_state):
-		if reader.is_dirty or (_tick + reader.id) % 60 == 0:
+	var readers := _finder.find(world_2d.direct_space_state, around, mask)
+	discs = around
+	var wider := _around_movables(readers)
+	if not wider.is_empty():
+		# what can be pushed meets what lies around it
+		discs = around + wider
+		readers = _finder.find(world_2d.direct_space_state, discs, mask)
+	for reader: BodyReader in readers:
+		reader.look()
+		if reader.is_dirty or (_tick + reader.id) % _TICKS_TO_DESCRIBE == 0:
 			_describe(reader, problems)
 		if not reader.is_usable:
 			continue
 		var state := reader.read_state(_tick, tick_seconds)
 		if reader.is_dirty:
 			_describe(reader, problems)
-		for i: int in range(3, 6):
-			state[i] *= time_scale
+		if time_scale != 1.0:
+			for i: int in range(3, 6):
+				state[i] *= time_scale
 		ids.append(reader.id)
 		states.append_array(state)
 	near_count = ids.size()
+	problems.append_array(_finder.take_problems())
 	problems.append_array(
-		_native.submit(ids, states, clampf(tick_seconds / time_scale, 0.001, 1.0), gravity)
+		_native.submit(
+			ids, states, clampf(tick_seconds / time_scale, 0.001, 1.0), gravity, _to_meters(discs)
+		)
 	)
+	left_out = _native.get_left_out()
 	return problems
 
 
 ## Gives bodies what the tool pushed them with: id, x, y, angular each.
 func give(impulses: PackedFloat64Array, time_scale: float) -> void:
 	for i: int in range(0, impulses.size() - 3, 4):
-		var reader: BodyReader = _numbers.get(int(impulses[i]))
-		if reader != null:
+		var reader := _finder.reader_of(int(impulses[i]))
+		if reader != null and reader.is_present():
 			reader.take_impulse(impulses[i + 1], impulses[i + 2], impulses[i + 3], time_scale)
 
 
 ## The node with that number, null when it is gone.
-func body_of(number: int) -> CollisionObject2D:
-	var reader: BodyReader = _numbers.get(number)
-	return reader.node if reader != null else null
+func body_of(number: int) -> Node2D:
+	var reader := _finder.reader_of(number)
+	return reader.node if reader != null and is_instance_valid(reader.node) else null
 
 
 ## Forgets everything.
 func clear() -> void:
-	for reader: BodyReader in _readers.values().duplicate():
-		_forget(reader)
+	_finder.clear()
+	_watchers.clear()
 
 
-func _find(space: PhysicsDirectSpaceState2D) -> Array[BodyReader]:
-	var results := space.intersect_shape(_query, _most_results)
-	while results.size() >= _most_results and _most_results < _MOST_RESULTS:
-		_most_results *= 2
-		results = space.intersect_shape(_query, _most_results)
-	var found: Dictionary[int, BodyReader] = {}
-	for result: Dictionary in results:
-		var body := result["collider"] as CollisionObject2D
-		if body == null:
+# discs around what can be pushed, for what touches it
+func _around_movables(readers: Array[BodyReader]) -> Array[Vector3]:
+	var around: Array[Vector3] = []
+	for reader: BodyReader in readers:
+		if reader.kind() != "movable" or not is_finite(reader.extent):
 			continue
-		var reader := _reader_of(body)
-		found[reader.id] = reader
-	var ids := found.keys()
-	# the same order in every run
-	ids.sort()
-	var readers: Array[BodyReader] = []
-	for id: int in ids:
-		readers.append(found[id])
-	return readers
+		var at := reader.node.global_position
+		var radius := _units.to_pixels(reader.extent + Reach.MARGIN)
+		if not discs.any(func(disc: Vector3) -> bool: return _holds(disc, at, radius)):
+			around.append(Vector3(at.x, at.y, radius))
+	return around
 
 
-func _reader_of(body: CollisionObject2D) -> BodyReader:
-	var key := body.get_instance_id()
-	var reader: BodyReader = _readers.get(key)
-	if reader != null:
-		return reader
-	if body is RigidBody2D:
-		reader = MovableBody.new(body, _next_number, _units)
-	elif body is AnimatableBody2D or not body is StaticBody2D:
-		reader = KinematicBody.new(body, _next_number, _units)
-	else:
-		reader = FixedBody.new(body, _next_number, _units)
-	_next_number += 1
-	_readers[key] = reader
-	_numbers[reader.id] = reader
-	body.tree_exiting.connect(_forget.bind(reader), CONNECT_ONE_SHOT)
-	_watch(reader)
-	return reader
+func _holds(disc: Vector3, center: Vector2, radius: float) -> bool:
+	return Vector2(disc.x, disc.y).distance_to(center) + radius <= disc.z
+
+
+func _to_meters(around: Array[Vector3]) -> PackedFloat64Array:
+	var flat := PackedFloat64Array()
+	for disc: Vector3 in around:
+		flat.append_array(_units.point_to_meters(Vector2(disc.x, disc.y)))
+		flat.append(_units.to_meters(disc.z))
+	return flat
 
 
 func _describe(reader: BodyReader, problems: PackedStringArray) -> void:
 	reader.is_dirty = false
 	var description := reader.describe(default_surface)
+	_watch(reader)
 	var signature := description.hash()
 	if signature == reader.signature:
 		return
 	reader.signature = signature
 	var wrong := reader.problems + _native.set_body(reader.id, description)
 	reader.is_usable = _native.is_valid() and wrong.size() == reader.problems.size()
-	_watch(reader)
 	# our own nodes report themselves
 	if reader.node is HapticWall2D or reader.node is HapticObject2D:
 		return
@@ -160,26 +144,19 @@ func _describe(reader: BodyReader, problems: PackedStringArray) -> void:
 		problems.append("%s: %s" % [reader.node.get_path(), text])
 
 
-# changes of shapes and surfaces count at the next tick
+# changes inside of shapes and surfaces count at the next tick
 func _watch(reader: BodyReader) -> void:
-	var parts: Array[Resource] = [BodyReader.SurfaceReader.find(reader.node, default_surface)]
-	for owner_id: int in reader.node.get_shape_owners():
-		for index: int in reader.node.shape_owner_get_shape_count(owner_id):
-			parts.append(reader.node.shape_owner_get_shape(owner_id, index))
-	for part: Resource in parts:
-		if not part.changed.is_connected(_mark.bind(reader.id)):
-			part.changed.connect(_mark.bind(reader.id))
+	for part: Resource in reader.parts(default_surface):
+		var key := part.get_instance_id()
+		if not _watchers.has(key):
+			_watchers[key] = {}
+			# one connection for all bodies that share it: the engine takes no second one
+			part.changed.connect(_mark.bind(key))
+		_watchers[key][reader.id] = true
 
 
-func _mark(number: int) -> void:
-	var reader: BodyReader = _numbers.get(number)
-	if reader != null:
-		reader.is_dirty = true
-
-
-func _forget(reader: BodyReader) -> void:
-	_readers.erase(reader.node.get_instance_id())
-	_numbers.erase(reader.id)
-	if reader.node.tree_exiting.is_connected(_forget):
-		reader.node.tree_exiting.disconnect(_forget)
-	_native.remove_body(reader.id)
+func _mark(part: int) -> void:
+	for number: int in _watchers.get(part, {}):
+		var reader := _finder.reader_of(number)
+		if reader != null:
+			reader.is_dirty = true

@@ -40,6 +40,25 @@ func read(body: CollisionObject2D, scaling: Transform2D) -> void:
 			)
 
 
+## Takes one outline (px), as the tiles of a layer have them.
+func add_outline(id: int, points: PackedVector2Array, place: Transform2D, one_way: bool) -> void:
+	_one_way = one_way
+	_add_polygon(id, points, place, null)
+
+
+## Distance from the origin to the farthest point of what was read, m; infinite with a half-plane.
+func extent() -> float:
+	var farthest := 0.0
+	for shape: Dictionary in shapes:
+		if shape["kind"] == "half_plane":
+			return INF
+		var points: PackedFloat64Array = shape["points"]
+		for i: int in range(0, points.size() - 1, 2):
+			var distance := Vector2(points[i], points[i + 1]).length()
+			farthest = maxf(farthest, distance + (shape.get("radius", 0.0) as float))
+	return farthest
+
+
 func _read_shape(id: int, shape: Shape2D, place: Transform2D, holder: Node) -> void:
 	if shape is RectangleShape2D:
 		var half := (shape as RectangleShape2D).size / 2.0

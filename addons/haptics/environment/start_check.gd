@@ -20,6 +20,30 @@ static func find_overlap(tool: HapticTool2D, root: Node, slack_pixels: float) ->
 	return null
 
 
+## Bodies that the tool's mask selects and that have nothing but separation rays: the engine's
+## broad phase
+## does not even find those.
+static func find_rays_alone(tool: HapticTool2D, root: Node) -> Array[PhysicsBody2D]:
+	var found: Array[PhysicsBody2D] = []
+	for node: Node in root.find_children("*", "PhysicsBody2D", true, false):
+		var body := node as PhysicsBody2D
+		if body.collision_layer & tool.collision_mask == 0:
+			continue
+		if body.get_world_2d() == tool.get_world_2d() and _has_rays_alone(body):
+			found.append(body)
+	return found
+
+
+static func _has_rays_alone(body: PhysicsBody2D) -> bool:
+	var has_rays := false
+	for owner_id: int in body.get_shape_owners():
+		for index: int in body.shape_owner_get_shape_count(owner_id):
+			if not body.shape_owner_get_shape(owner_id, index) is SeparationRayShape2D:
+				return false
+			has_rays = true
+	return has_rays
+
+
 ## Depth that still counts as touching, px.
 static func slack(units: HapticUnits) -> float:
 	return units.to_pixels(_SLACK)

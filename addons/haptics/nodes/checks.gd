@@ -113,6 +113,16 @@ static func of_tool(tool: HapticTool2D) -> PackedStringArray:
 				% [wall.name, tool.global_position.round()]
 			)
 		)
+	for body: PhysicsBody2D in StartCheck.find_rays_alone(tool, _root_of(tool)):
+		problems.append(
+			(
+				(
+					"%s has no shape but SeparationRayShape2D, which has no surface to touch."
+					+ " Give it another shape, or take it off the layers that the tool touches."
+				)
+				% body.name
+			)
+		)
 	return problems
 
 

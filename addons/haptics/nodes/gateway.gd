@@ -146,14 +146,25 @@ func is_running() -> bool:
 	return server().world_is_running(_world)
 
 
-## Publishes what lies around the tool: six numbers a body (pose and velocity).
+## Publishes what lies within the discs (x, y, radius each): six numbers a body (pose and velocity).
 func submit(
 	bodies: PackedInt64Array,
 	states: PackedFloat64Array,
 	tick_seconds: float,
-	gravity: PackedFloat64Array
+	gravity: PackedFloat64Array,
+	discs: PackedFloat64Array
 ) -> PackedStringArray:
-	return server().world_submit(_world, bodies, states, tick_seconds, gravity)
+	return server().world_submit(_world, bodies, states, tick_seconds, gravity, discs)
+
+
+## Convex pieces within reach that did not fit into the last snapshot.
+func get_left_out() -> int:
+	return server().world_get_left_out(_world)
+
+
+## The convex pieces of the last snapshot, for a picture.
+func get_neighborhood() -> Array:
+	return server().world_get_neighborhood(_world)
 
 
 ## Lock-step: runs the haptic steps of so many seconds. Returns how many those were.

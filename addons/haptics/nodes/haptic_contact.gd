@@ -22,8 +22,8 @@ const _STATES: Dictionary[String, State] = {
 	"sliding": State.SLIDING,
 }
 
-## What is touched; null when it is gone.
-var body: CollisionObject2D
+## What is touched, a body or a TileMapLayer; null when it is gone.
+var body: Node2D
 ## What the contact does.
 var state: State = State.NONE
 ## Where, on the canvas, px.
@@ -43,9 +43,7 @@ var time: float
 
 
 ## From what the native side reports.
-static func from_report(
-	report: Dictionary, units: HapticUnits, touched: CollisionObject2D
-) -> HapticContact:
+static func from_report(report: Dictionary, units: HapticUnits, touched: Node2D) -> HapticContact:
 	var contact := HapticContact.new()
 	var at: PackedFloat64Array = report["position"]
 	var out: PackedFloat64Array = report["normal"]

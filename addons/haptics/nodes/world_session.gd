@@ -5,6 +5,7 @@ extends RefCounted
 
 const Gateway := preload("gateway.gd")
 const Neighborhood := preload("../environment/neighborhood.gd")
+const Reach := preload("../environment/reach.gd")
 const ToolReader := preload("../environment/tool_reader.gd")
 
 # below this scale of time a scene counts as paused
@@ -25,6 +26,7 @@ var _world: HapticWorld2D
 var _cursor: HapticHandCursor2D
 var _is_lockstep := false
 var _is_stalled := false
+var _reach := Reach.new()
 var _faults: PackedStringArray = []
 
 
@@ -83,12 +85,9 @@ func tick(seconds: float) -> PackedStringArray:
 	state = native.get_state()
 	var impulses := native.take_impulses()
 	units.set_frame(_world.global_transform)
-	var speed := Vector2(state[Gateway.State.VELOCITY_X], state[Gateway.State.VELOCITY_Y]).length()
-	var place := units.point_to_canvas(state[Gateway.State.TOOL_X], state[Gateway.State.TOOL_Y])
 	var problems := neighborhood.publish(
 		_world.get_world_2d(),
-		place,
-		neighborhood.reach(ToolReader.extent(tool), speed, seconds / scale),
+		_reach_of_tool(seconds / scale),
 		tool.collision_mask,
 		seconds,
 		scale,
@@ -129,6 +128,20 @@ func get_contacts() -> Array[HapticContact]:
 func aim(point: Vector2, angle: float) -> void:
 	var at := units.point_to_meters(point)
 	native.aim(at[0], at[1], units.angle_to_native(angle))
+
+
+# where to look around: a disc (canvas) that the tool cannot leave before the next snapshot counts
+func _reach_of_tool(tick_seconds: float) -> Array[Vector3]:
+	if not _is_lockstep:
+		_reach.note(Time.get_ticks_usec() * 1e-6)
+	var place := units.point_to_canvas(state[Gateway.State.TOOL_X], state[Gateway.State.TOOL_Y])
+	var speed := Vector2(state[Gateway.State.VELOCITY_X], state[Gateway.State.VELOCITY_Y]).length()
+	# the report tells the speed of the center of mass
+	var lever := units.to_meters(tool.center_of_mass.length())
+	speed += absf(state[Gateway.State.VELOCITY_ANGLE]) * lever
+	var extent := units.to_meters(ToolReader.extent(tool))
+	var radius := units.to_pixels(_reach.distance(extent, speed, tick_seconds))
+	return [Vector3(place.x, place.y, radius)]
 
 
 # pauses the output while time nearly stands; says whether it does

@@ -11,6 +11,8 @@ namespace {
 
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 
+} // namespace
+
 PieceBounds bounds_of(const Convex& convex) {
     PieceBounds bounds;
     if (convex.half_plane || convex.count < 1) {
@@ -36,8 +38,6 @@ PieceBounds bounds_of(const Convex& convex) {
     bounds.high.array() += convex.radius;
     return bounds;
 }
-
-} // namespace
 
 void compute_bounds(const BodySet& set, BodyBounds& bounds) {
     for (std::int32_t i = 0; i < set.body_count; ++i) {

@@ -18,6 +18,9 @@ Pose center_to_node(const Pose& at_center, const Vec2& center) {
 
 void BodyRegistry::set(std::int64_t id, BodySpec spec) {
     spec.body.id = static_cast<std::uint64_t>(id);
+    spec.bounds.clear();
+    for (const Piece& p : spec.pieces)
+        spec.bounds.push_back(bounds_of(p.convex));
     bodies_[id] = std::move(spec);
     stale_ = true;
 }
@@ -32,38 +35,26 @@ const BodySpec* BodyRegistry::find(std::int64_t id) const {
 }
 
 std::vector<std::int64_t> BodyRegistry::build(std::span<const std::int64_t> ids,
-                                              std::span<const double> states, Neighborhood& out) {
+                                              std::span<const double> states,
+                                              std::span<const ReachDisc> discs, Neighborhood& out) {
     std::vector<std::int64_t> unknown;
-    BodySet& set = out.bodies;
-    set.body_count = 0;
-    set.piece_count = 0;
-    out.overflow = 0;
+    std::vector<Candidate> candidates;
+    candidates.reserve(ids.size());
     for (std::size_t i = 0; i < ids.size(); ++i) {
         const BodySpec* spec = find(ids[i]);
-        if (spec == nullptr) {
-            unknown.push_back(ids[i]);
-            continue;
-        }
-        const auto pieces = static_cast<std::int32_t>(spec->pieces.size());
-        if (set.body_count == k_max_bodies || set.piece_count + pieces > k_max_pieces) {
-            ++out.overflow;
-            continue;
-        }
         const double* s = states.data() + i * k_state;
-        if (!std::all_of(s, s + k_state, [](double v) { return std::isfinite(v); })) {
+        if (spec == nullptr || !std::all_of(s, s + k_state, [](double v) { return std::isfinite(v); })) {
             unknown.push_back(ids[i]);
             continue;
         }
-        Body& b = set.body[static_cast<std::size_t>(set.body_count++)];
-        b = spec->body;
-        b.pose = node_to_center(Pose(s[0], s[1], s[2]), spec->center);
-        b.velocity = b.kind == BodyKind::fixed ? Twist(Twist::Zero()) : Twist(s[3], s[4], s[5]);
-        b.first_piece = set.piece_count;
-        b.piece_count = pieces;
-        for (const Piece& p : spec->pieces)
-            set.piece[static_cast<std::size_t>(set.piece_count++)] = p;
+        Candidate c{spec->body, spec->pieces, spec->bounds};
+        c.body.pose = node_to_center(Pose(s[0], s[1], s[2]), spec->center);
+        c.body.velocity = c.body.kind == BodyKind::fixed ? Twist(Twist::Zero()) : Twist(s[3], s[4], s[5]);
+        candidates.push_back(c);
     }
-    join_fixed(set);
+    left_out_ = select_near(candidates, discs, out.bodies);
+    out.overflow = left_out_.pieces;
+    join_fixed(out.bodies);
     return unknown;
 }
 
@@ -76,7 +67,6 @@ void BodyRegistry::join_fixed(BodySet& set) {
         const Body& b = set.body[static_cast<std::size_t>(i)];
         if (b.kind != BodyKind::fixed)
             continue;
-        now.push_back({b.id, b.pose});
         const auto same = [&b](const Surface* s) {
             return s->stiffness == b.surface.stiffness && s->damping == b.surface.damping &&
                    s->static_friction == b.surface.static_friction &&
@@ -88,6 +78,7 @@ void BodyRegistry::join_fixed(BodySet& set) {
             group = surfaces.insert(surfaces.end(), &b.surface);
         for (std::int32_t k = 0; k < b.piece_count; ++k) {
             Piece& p = set.piece[static_cast<std::size_t>(b.first_piece + k)];
+            now.push_back({b.id, p.id, b.pose});
             if (!p.one_way)
                 solid.push_back({&p.convex, b.pose, static_cast<int>(group - surfaces.begin())});
         }

@@ -152,21 +152,36 @@ bool HapticServer::world_is_running(int64_t world) const {
 
 PackedStringArray HapticServer::world_submit(int64_t world, const PackedInt64Array& bodies,
                                              const PackedFloat64Array& states, double tick,
-                                             const PackedFloat64Array& gravity) {
+                                             const PackedFloat64Array& gravity,
+                                             const PackedFloat64Array& discs) {
     Problems problems;
     HapticWorld* w = find(world);
     if (w == nullptr)
         return problems.to_godot();
     const auto wanted = static_cast<std::size_t>(bodies.size()) * BodyRegistry::k_state;
-    if (static_cast<std::size_t>(states.size()) != wanted || gravity.size() != 2) {
+    if (static_cast<std::size_t>(states.size()) != wanted || gravity.size() != 2 || discs.size() % 3 != 0) {
         problems.add("world_submit() got " + std::to_string(states.size()) + " state numbers for " +
                      std::to_string(bodies.size()) +
-                     " bodies (6 each: x, y, angle, vx, vy, angular velocity) and " +
-                     std::to_string(gravity.size()) + " for gravity (2).");
+                     " bodies (6 each: x, y, angle, vx, vy, angular velocity), " +
+                     std::to_string(gravity.size()) + " for gravity (2) and " + std::to_string(discs.size()) +
+                     " for discs (3 each: x, y, radius).");
         return problems.to_godot();
     }
-    w->submit(bodies.span(), states.span(), tick, Vec2(gravity[0], gravity[1]), problems);
+    std::vector<ReachDisc> near;
+    for (int64_t i = 0; i < discs.size(); i += 3)
+        near.push_back({Vec2(discs[i], discs[i + 1]), discs[i + 2]});
+    w->submit(bodies.span(), states.span(), near, tick, Vec2(gravity[0], gravity[1]), problems);
     return problems.to_godot();
+}
+
+Array HapticServer::world_get_neighborhood(int64_t world) const {
+    const HapticWorld* w = find(world);
+    return w == nullptr ? Array() : w->neighborhood();
+}
+
+int64_t HapticServer::world_get_left_out(int64_t world) const {
+    const HapticWorld* w = find(world);
+    return w == nullptr ? 0 : w->left_out();
 }
 
 int64_t HapticServer::world_advance(int64_t world, double seconds) {
@@ -328,8 +343,10 @@ void HapticServer::_bind_methods() {
                          &HapticServer::world_start, DEFVAL(0.0));
     ClassDB::bind_method(D_METHOD("world_stop", "world"), &HapticServer::world_stop);
     ClassDB::bind_method(D_METHOD("world_is_running", "world"), &HapticServer::world_is_running);
-    ClassDB::bind_method(D_METHOD("world_submit", "world", "bodies", "states", "tick", "gravity"),
+    ClassDB::bind_method(D_METHOD("world_submit", "world", "bodies", "states", "tick", "gravity", "discs"),
                          &HapticServer::world_submit);
+    ClassDB::bind_method(D_METHOD("world_get_neighborhood", "world"), &HapticServer::world_get_neighborhood);
+    ClassDB::bind_method(D_METHOD("world_get_left_out", "world"), &HapticServer::world_get_left_out);
     ClassDB::bind_method(D_METHOD("world_advance", "world", "seconds"), &HapticServer::world_advance);
     ClassDB::bind_method(D_METHOD("world_refresh", "world"), &HapticServer::world_refresh);
     ClassDB::bind_method(D_METHOD("world_get_state", "world"), &HapticServer::world_get_state);

@@ -87,8 +87,9 @@ void HapticWorld::remove_body(std::int64_t id) {
     complained_.erase(id);
 }
 
-void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const double> states, double tick,
-                         const Vec2& gravity, Problems& problems) {
+void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const double> states,
+                         std::span<const ReachDisc> discs, double tick, const Vec2& gravity,
+                         Problems& problems) {
     if (!running())
         return;
     if (!std::isfinite(tick) || tick < 1e-3 || tick > 1.0 || !gravity.allFinite()) {
@@ -97,7 +98,7 @@ void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const doub
         return;
     }
     Neighborhood& n = runner_->neighborhood();
-    for (const std::int64_t id : bodies_.build(ids, states, n))
+    for (const std::int64_t id : bodies_.build(ids, states, discs, n))
         if (!complained_[id]) {
             complained_[id] = true;
             problems.add("Body " + std::to_string(id) +
@@ -114,7 +115,13 @@ void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const doub
     // runs
     n.plan = choose_plan(runner_->session().model(), n);
     plan_ = n.plan;
+    shown_.bodies.body_count = n.bodies.body_count;
+    shown_.bodies.piece_count = n.bodies.piece_count;
+    std::copy_n(n.bodies.body.begin(), n.bodies.body_count, shown_.bodies.body.begin());
+    std::copy_n(n.bodies.piece.begin(), n.bodies.piece_count, shown_.bodies.piece.begin());
+    shown_.overflow = n.overflow;
     runner_->publish();
+    note_overflow(problems);
     ++ve_ticks_;
     for (const std::string& message : device_->take_messages())
         problems.add(message);
@@ -163,6 +170,12 @@ void HapticWorld::start(bool realtime, double record_seconds, Problems& problems
     echo_count_ = 0;
     taken_.clear();
     complained_.clear();
+    shown_.bodies.body_count = 0;
+    shown_.bodies.piece_count = 0;
+    shown_.overflow = 0;
+    overflowed_ticks_ = 0;
+    said_full_ = false;
+    said_movables_ = false;
     given_report_ = HapticReport{};
     scheduling_ = "lock-step";
     scheduling_details_ = "Lock-step: the haptic steps run on the main thread, at each physics tick.";
@@ -282,6 +295,7 @@ Dictionary HapticWorld::statistics() const {
     d["exact_gave_way"] = static_cast<int64_t>(report_.exact_gave_way);
     d["patch_overflow"] = static_cast<int64_t>(report_.patch_overflow);
     d["movable_overflow"] = static_cast<int64_t>(report_.movable_overflow);
+    d["neighborhood"] = neighborhood_figures();
     d["rows_dropped"] = static_cast<int64_t>(runner_->rows_dropped());
     d["events_dropped"] = static_cast<int64_t>(runner_->events_dropped());
     PackedStringArray faults;

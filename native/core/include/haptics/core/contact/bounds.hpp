@@ -26,6 +26,9 @@ struct BodyBounds {
     std::array<PieceBounds, k_max_pieces> piece;
 };
 
+/// Bounds of one piece. Allocation-free.
+[[nodiscard]] PieceBounds bounds_of(const Convex& convex);
+
 /// Computes the bounds of a set. Allocation-free.
 void compute_bounds(const BodySet& set, BodyBounds& bounds);
 

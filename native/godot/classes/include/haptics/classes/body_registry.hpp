@@ -3,6 +3,7 @@
 
 #include <haptics/classes/dictionary_reader.hpp>
 #include <haptics/core/local_model/neighborhood.hpp>
+#include <haptics/core/local_model/select_near.hpp>
 
 #include <cstdint>
 #include <span>
@@ -15,6 +16,8 @@ namespace haptics {
 struct BodySpec {
     Body body;
     std::vector<Piece> pieces;
+    /// Bounds of the pieces, same order; set() fills them.
+    std::vector<PieceBounds> bounds;
     /// Center of mass in the axes of the scene's node, m.
     Vec2 center{0.0, 0.0};
 };
@@ -37,15 +40,17 @@ class BodyRegistry {
     [[nodiscard]] const BodySpec* find(std::int64_t id) const;
     [[nodiscard]] std::size_t size() const { return bodies_.size(); }
     void clear() { bodies_.clear(); }
+    /// What did not fit in the last snapshot.
+    [[nodiscard]] const LeftOut& left_out() const { return left_out_; }
 
     /// Numbers per body in `states` of build(): node pose (x, y, theta), then velocity of the center of mass
     /// (x, y) and angular velocity.
     static constexpr std::size_t k_state = 6;
 
-    /// Fills the bodies of a snapshot from ids and states; what does not fit is counted in `overflow`,
-    /// unknown ids are returned.
+    /// Fills the bodies of a snapshot from ids and states with what lies within the discs (all of it without
+    /// discs); what does not fit is counted in `overflow`, unknown ids are returned.
     std::vector<std::int64_t> build(std::span<const std::int64_t> ids, std::span<const double> states,
-                                    Neighborhood& out);
+                                    std::span<const ReachDisc> discs, Neighborhood& out);
 
   private:
     void join_fixed(BodySet& set);
@@ -54,12 +59,16 @@ class BodyRegistry {
     // seams between fixed bodies are found again only when the set of them changes
     struct Placed {
         std::uint64_t id;
+        std::uint32_t piece;
         Pose pose;
-        bool operator==(const Placed& other) const { return id == other.id && pose == other.pose; }
+        bool operator==(const Placed& other) const {
+            return id == other.id && piece == other.piece && pose == other.pose;
+        }
     };
     std::vector<Placed> joined_;
     std::vector<Convex> joined_pieces_;
     bool stale_{true};
+    LeftOut left_out_;
 };
 
 } // namespace haptics

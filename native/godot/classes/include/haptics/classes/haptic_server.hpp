@@ -82,7 +82,10 @@ class HapticServer : public godot::Object {
     bool world_is_running(int64_t world) const;
     godot::PackedStringArray world_submit(int64_t world, const godot::PackedInt64Array& bodies,
                                           const godot::PackedFloat64Array& states, double tick,
-                                          const godot::PackedFloat64Array& gravity);
+                                          const godot::PackedFloat64Array& gravity,
+                                          const godot::PackedFloat64Array& discs);
+    godot::Array world_get_neighborhood(int64_t world) const;
+    int64_t world_get_left_out(int64_t world) const;
     int64_t world_advance(int64_t world, double seconds);
     void world_refresh(int64_t world);
     godot::PackedFloat64Array world_get_state(int64_t world) const;

@@ -31,9 +31,15 @@ class HapticWorld {
     void set_body(std::int64_t id, const godot::Dictionary& body, Problems& problems);
     void remove_body(std::int64_t id);
 
-    /// Publishes a snapshot; ids that could not be used are named in `problems` (once each).
-    void submit(std::span<const std::int64_t> ids, std::span<const double> states, double tick,
-                const Vec2& gravity, Problems& problems);
+    /// Publishes a snapshot of what lies within the discs; ids that could not be used are named in `problems`
+    /// (once each), and so is a snapshot that is full.
+    void submit(std::span<const std::int64_t> ids, std::span<const double> states,
+                std::span<const ReachDisc> discs, double tick, const Vec2& gravity, Problems& problems);
+    /// The pieces of the last snapshot, for a picture: body, kind, one_way, half_plane, radius, points (scene
+    /// axes, m).
+    [[nodiscard]] godot::Array neighborhood() const;
+    /// Pieces that did not fit into the last snapshot.
+    [[nodiscard]] std::int32_t left_out() const { return shown_.overflow; }
     /// Builds session and runner; starts the thread when `realtime`.
     void start(bool realtime, double record_seconds, Problems& problems);
     void stop();
@@ -62,6 +68,8 @@ class HapticWorld {
 
   private:
     void note_figures(const HapticReport& r);
+    void note_overflow(Problems& problems);
+    [[nodiscard]] godot::Dictionary neighborhood_figures() const;
 
     WorldSettings settings_;
     std::optional<ToolModel> tool_;
@@ -83,6 +91,10 @@ class HapticWorld {
     std::uint64_t echo_step_{0};
     /// Of the newest snapshot.
     Plan plan_;
+    Neighborhood shown_;
+    std::uint64_t overflowed_ticks_{0};
+    bool said_full_{false};
+    bool said_movables_{false};
     std::array<MovableBelief, k_max_movables> echo_;
     std::int32_t echo_count_{0};
     struct Taken {

@@ -1,0 +1,180 @@
+@tool
+extends RefCounted
+## Finds the bodies around the tool by the engine's broad phase, and gives each a reader and a
+## number that
+## stay as long as the body.
+
+const BodyReader := preload("body_reader.gd")
+const FixedBody := preload("fixed_body.gd")
+const KinematicBody := preload("kinematic_body.gd")
+const MovableBody := preload("movable_body.gd")
+const TileBody := preload("tile_body.gd")
+const TileLayer := preload("tile_layer.gd")
+
+# the engine cuts lists of results silently: ask again with more room when one comes back full
+const _FIRST_RESULTS := 64
+const _MOST_RESULTS := 4096
+
+var _units: HapticUnits
+# takes a number back on the native side
+var _remove: Callable
+var _query := PhysicsShapeQueryParameters2D.new()
+var _circle := CircleShape2D.new()
+# by instance id of the node, and by number
+var _readers: Dictionary[int, BodyReader] = {}
+var _layers: Dictionary[int, TileLayer] = {}
+var _numbers: Dictionary[int, BodyReader] = {}
+# left the tree since the last look; some come back at once, under another parent
+var _leaving: Dictionary[int, bool] = {}
+var _next_number := 1
+var _most_results := _FIRST_RESULTS
+var _problems := PackedStringArray()
+
+
+func _init(units: HapticUnits, remove: Callable) -> void:
+	_units = units
+	_remove = remove
+	_query.shape = _circle
+	_query.collide_with_areas = false
+
+
+## The bodies within the discs (canvas: x, y, radius in px) that `mask` selects, in the order in
+## which they
+## were met first: the same in every run.
+func find(space: PhysicsDirectSpaceState2D, discs: Array[Vector3], mask: int) -> Array[BodyReader]:
+	var found: Dictionary[int, BodyReader] = {}
+	_query.collision_mask = mask
+	for disc: Vector3 in discs:
+		_circle.radius = disc.z
+		_query.transform = Transform2D(0.0, Vector2(disc.x, disc.y))
+		var seen: Dictionary[int, bool] = {}
+		for result: Dictionary in _ask(space):
+			var key: int = result["collider_id"]
+			if seen.has(key):
+				continue
+			seen[key] = true
+			var reader: BodyReader = _readers.get(key)
+			if reader != null:
+				found[reader.id] = reader
+			else:
+				_meet(result["collider"], disc, mask, found)
+	var ids := found.keys()
+	ids.sort()
+	var readers: Array[BodyReader] = []
+	for id: int in ids:
+		readers.append(found[id])
+	return readers
+
+
+## The reader with that number, null when it is gone.
+func reader_of(number: int) -> BodyReader:
+	return _numbers.get(number)
+
+
+## Takes the numbers of bodies back that left the scene for good.
+func forget_gone() -> void:
+	for key: int in _leaving:
+		var reader: BodyReader = _readers.get(key)
+		if reader != null and not reader.is_present():
+			_drop(reader)
+			_readers.erase(key)
+		var layer: TileLayer = _layers.get(key)
+		if layer != null and not (is_instance_valid(layer.node) and layer.node.is_inside_tree()):
+			for body: TileBody in layer.bodies():
+				_drop(body)
+			_layers.erase(key)
+	_leaving.clear()
+
+
+## What cannot be touched, each with the path of its node, since the last call.
+func take_problems() -> PackedStringArray:
+	var told := _problems
+	_problems = PackedStringArray()
+	return told
+
+
+## Forgets everything.
+func clear() -> void:
+	for number: int in _numbers.keys():
+		_drop(_numbers[number])
+	_readers.clear()
+	_layers.clear()
+	_leaving.clear()
+
+
+func _ask(space: PhysicsDirectSpaceState2D) -> Array[Dictionary]:
+	var results := space.intersect_shape(_query, _most_results)
+	while results.size() >= _most_results and _most_results < _MOST_RESULTS:
+		_most_results *= 2
+		results = space.intersect_shape(_query, _most_results)
+	return results
+
+
+func _meet(collider: Object, disc: Vector3, mask: int, found: Dictionary[int, BodyReader]) -> void:
+	if collider is TileMapLayer:
+		var layer := _layer_of(collider as TileMapLayer)
+		for body: BodyReader in layer.find_near(
+			Vector2(disc.x, disc.y), disc.z, mask, _adopt_tiles, _drop
+		):
+			found[body.id] = body
+	elif collider is CollisionObject2D:
+		var reader := _make(collider as CollisionObject2D)
+		found[reader.id] = reader
+	elif collider is Node:
+		(
+			_problems
+			. append(
+				(
+					"%s: a %s cannot be touched. Use TileMapLayers for tiles, and bodies for everything else."
+					% [(collider as Node).get_path(), collider.get_class()]
+				)
+			)
+		)
+
+
+func _make(body: CollisionObject2D) -> BodyReader:
+	var reader: BodyReader
+	if body is RigidBody2D:
+		reader = MovableBody.new(body, _next_number, _units)
+	elif body is AnimatableBody2D or not body is StaticBody2D:
+		reader = KinematicBody.new(body, _next_number, _units)
+	else:
+		reader = FixedBody.new(body, _next_number, _units)
+	_next_number += 1
+	_readers[body.get_instance_id()] = reader
+	_numbers[reader.id] = reader
+	_follow(body)
+	return reader
+
+
+func _layer_of(node: TileMapLayer) -> TileLayer:
+	var key := node.get_instance_id()
+	if not _layers.has(key):
+		_layers[key] = TileLayer.new(node)
+		_follow(node)
+	return _layers[key]
+
+
+func _adopt_tiles(node: TileMapLayer) -> TileBody:
+	var body := TileBody.new(node, _next_number, _units)
+	_next_number += 1
+	_numbers[body.id] = body
+	return body
+
+
+func _follow(node: Node) -> void:
+	var key := node.get_instance_id()
+	if not node.tree_exiting.is_connected(_on_leaving):
+		node.tree_exiting.connect(_on_leaving.bind(key))
+
+
+func _on_leaving(key: int) -> void:
+	_leaving[key] = true
+
+
+func _drop(reader: BodyReader) -> void:
+	_numbers.erase(reader.id)
+	if is_instance_valid(reader.node) and reader.node.tree_exiting.is_connected(_on_leaving):
+		if not reader is TileBody:
+			reader.node.tree_exiting.disconnect(_on_leaving)
+	_remove.call(reader.id)
