@@ -38,13 +38,15 @@ func _init(units: HapticUnits, remove: Callable) -> void:
 	_query.collide_with_areas = false
 
 
-## The bodies within the discs (canvas: x, y, radius in px) that `mask` selects, in the order in
-## which they
-## were met first: the same in every run.
-func find(space: PhysicsDirectSpaceState2D, discs: Array[Vector3], mask: int) -> Array[BodyReader]:
+## The bodies within the discs (canvas: x, y, radius in px), each grown by `growth` px, that `mask`
+## selects, in the order in which they were met first: the same in every run.
+func find(
+	space: PhysicsDirectSpaceState2D, discs: Array[Vector3], growth: float, mask: int
+) -> Array[BodyReader]:
 	var found: Dictionary[int, BodyReader] = {}
 	_query.collision_mask = mask
-	for disc: Vector3 in discs:
+	for small: Vector3 in discs:
+		var disc := Vector3(small.x, small.y, small.z + growth)
 		_circle.radius = disc.z
 		_query.transform = Transform2D(0.0, Vector2(disc.x, disc.y))
 		var seen: Dictionary[int, bool] = {}

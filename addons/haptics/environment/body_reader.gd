@@ -30,8 +30,8 @@ var problems: PackedStringArray = []
 var extent := 0.0
 
 var _units: HapticUnits
-var _pose: PackedFloat64Array = []
-var _velocity: PackedFloat64Array = [0.0, 0.0, 0.0]
+# x, y, angle, vx, vy, angular velocity
+var _state: PackedFloat64Array = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
 var _tick := -1
 var _print := 0
 var _seen_at := Transform2D()
@@ -93,10 +93,11 @@ func kind() -> String:
 	return "fixed"
 
 
-## Pose and velocity at tick number `tick`: x, y, angle, vx, vy, angular velocity.
+## Pose and velocity at tick number `tick`: x, y, angle, vx, vy, angular velocity. Not to be
+## changed.
 func read_state(tick: int, seconds: float) -> PackedFloat64Array:
 	_follow(tick, seconds)
-	return _pose + _velocity
+	return _state
 
 
 ## Takes an impulse of the tool (N s, N s, N m s), seconds of game time a second of real time.
@@ -135,27 +136,35 @@ func _features() -> Array:
 
 # Godot reports no velocity for what a script moves, and the server's transform lags: difference.
 func _follow(tick: int, seconds: float) -> void:
-	if _tick == tick - 1 and _seen_frame == _units.frame and _seen_at == node.global_transform:
-		_velocity.fill(0.0)
-		_tick = tick
-		return
-	_seen_at = node.global_transform
-	_seen_frame = _units.frame
-	var now := _read_pose()
-	if _tick == tick - 1 and seconds > 0.0:
-		for i: int in 3:
-			_velocity[i] = (now[i] - _pose[i]) / seconds
-		if Vector2(_velocity[0], _velocity[1]).length() > TELEPORT_SPEED:
-			_velocity.fill(0.0)
-	elif _tick != tick:
-		_velocity.fill(0.0)
-	_pose = now
+	var at := node.global_transform
+	var is_next := _tick == tick - 1 and seconds > 0.0
+	if at == _seen_at and _seen_frame == _units.frame:
+		_set_velocity(0.0, 0.0, 0.0)
+	else:
+		var x := _state[0]
+		var y := _state[1]
+		var angle := _state[2]
+		_place(at)
+		if is_next:
+			_set_velocity(
+				(_state[0] - x) / seconds, (_state[1] - y) / seconds, (_state[2] - angle) / seconds
+			)
+		if not is_next or Vector2(_state[3], _state[4]).length() > TELEPORT_SPEED:
+			_set_velocity(0.0, 0.0, 0.0)
 	_tick = tick
 
 
 # the angle is kept free of jumps from +pi to -pi
-func _read_pose() -> PackedFloat64Array:
-	var now := _units.pose_to_meters(node.global_transform)
-	if not _pose.is_empty():
-		now[2] = _pose[2] + angle_difference(_pose[2], now[2])
-	return now
+func _place(at: Transform2D) -> void:
+	var now := _units.pose_to_meters(at)
+	_state[0] = now[0]
+	_state[1] = now[1]
+	_state[2] = now[2] if _seen_frame < 0 else _state[2] + angle_difference(_state[2], now[2])
+	_seen_at = at
+	_seen_frame = _units.frame
+
+
+func _set_velocity(x: float, y: float, angular: float) -> void:
+	_state[3] = x
+	_state[4] = y
+	_state[5] = angular

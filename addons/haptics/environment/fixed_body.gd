@@ -11,7 +11,7 @@ func kind() -> String:
 
 func read_state(tick: int, seconds: float) -> PackedFloat64Array:
 	var state := super.read_state(tick, seconds)
-	if not _moves and Vector3(_velocity[0], _velocity[1], _velocity[2]).length() > REST_SPEED:
+	if not _moves and Vector3(_state[3], _state[4], _state[5]).length() > REST_SPEED:
 		_moves = true
 		is_dirty = true
 	return state

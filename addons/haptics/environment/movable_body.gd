@@ -32,11 +32,14 @@ func read_state(tick: int, seconds: float) -> PackedFloat64Array:
 	var body := node as RigidBody2D
 	if body.freeze:
 		return super.read_state(tick, seconds)
-	_pose = _read_pose()
+	if body.sleeping and _seen_at == body.global_transform and _seen_frame == _units.frame:
+		_set_velocity(0.0, 0.0, 0.0)
+	else:
+		_place(body.global_transform)
+		var velocity := _units.velocity_to_meters(body.linear_velocity)
+		_set_velocity(velocity[0], velocity[1], -body.angular_velocity)
 	_tick = tick
-	var velocity := _units.velocity_to_meters(body.linear_velocity)
-	velocity.append(-body.angular_velocity)
-	return _pose + velocity
+	return _state
 
 
 func take_impulse(x: float, y: float, angular: float, time_scale: float) -> void:

@@ -8,7 +8,9 @@ const BodyFinder := preload("body_finder.gd")
 const BodyReader := preload("body_reader.gd")
 const Reach := preload("reach.gd")
 
-# every body that stays near is described anew once in so many ticks, whatever was noticed
+# what has no signal is looked for in so many ticks, in what is touched at every tick
+const _TICKS_TO_LOOK := 8
+# and everything is described anew in so many, whatever was noticed
 const _TICKS_TO_DESCRIBE := 240
 
 ## Surface of bodies that have none.
@@ -26,6 +28,8 @@ var _finder: BodyFinder
 # numbers of bodies that are made of a resource, by its instance id
 var _watchers: Dictionary[int, Dictionary] = {}
 var _tick := 0
+# how much farther than the discs the last snapshot wanted to see, px
+var _growth := 0.0
 
 
 func _init(native: Gateway, units: HapticUnits) -> void:
@@ -50,27 +54,27 @@ func publish(
 	var problems := PackedStringArray()
 	var ids := PackedInt64Array()
 	var states := PackedFloat64Array()
-	var readers := _finder.find(world_2d.direct_space_state, around, mask)
-	discs = around
-	var wider := _around_movables(readers)
-	if not wider.is_empty():
-		# what can be pushed meets what lies around it
-		discs = around + wider
-		readers = _finder.find(world_2d.direct_space_state, discs, mask)
+	var touched := _native.get_touched()
+	discs = around.duplicate()
+	var readers := _finder.find(world_2d.direct_space_state, around, _growth, mask)
+	_surround_movables(readers)
 	for reader: BodyReader in readers:
-		reader.look()
-		if reader.is_dirty or (_tick + reader.id) % _TICKS_TO_DESCRIBE == 0:
-			_describe(reader, problems)
+		var turn := _tick + reader.id
+		if reader.is_dirty or turn % _TICKS_TO_LOOK == 0 or reader.id in touched:
+			reader.look()
+			if reader.is_dirty or turn % _TICKS_TO_DESCRIBE == 0:
+				_describe(reader, problems)
 		if not reader.is_usable:
 			continue
 		var state := reader.read_state(_tick, tick_seconds)
 		if reader.is_dirty:
 			_describe(reader, problems)
-		if time_scale != 1.0:
-			for i: int in range(3, 6):
-				state[i] *= time_scale
 		ids.append(reader.id)
 		states.append_array(state)
+	if time_scale != 1.0:
+		for i: int in states.size():
+			if i % 6 > 2:
+				states[i] *= time_scale
 	near_count = ids.size()
 	problems.append_array(_finder.take_problems())
 	problems.append_array(
@@ -102,21 +106,24 @@ func clear() -> void:
 	_watchers.clear()
 
 
-# discs around what can be pushed, for what touches it
-func _around_movables(readers: Array[BodyReader]) -> Array[Vector3]:
-	var around: Array[Vector3] = []
+# A body that can be pushed meets what lies around it: a disc each, and at the next tick the bodies
+# are looked for that much farther out.
+func _surround_movables(readers: Array[BodyReader]) -> void:
+	_growth = 0.0
+	var around: Array[Vector3] = discs.duplicate()
 	for reader: BodyReader in readers:
 		if reader.kind() != "movable" or not is_finite(reader.extent):
 			continue
 		var at := reader.node.global_position
 		var radius := _units.to_pixels(reader.extent + Reach.MARGIN)
-		if not discs.any(func(disc: Vector3) -> bool: return _holds(disc, at, radius)):
-			around.append(Vector3(at.x, at.y, radius))
-	return around
-
-
-func _holds(disc: Vector3, center: Vector2, radius: float) -> bool:
-	return Vector2(disc.x, disc.y).distance_to(center) + radius <= disc.z
+		var growth := INF
+		for disc: Vector3 in around:
+			var distance := at.distance_to(Vector2(disc.x, disc.y))
+			if distance <= disc.z + radius:
+				growth = minf(growth, maxf(distance + radius - disc.z, 0.0))
+		if growth > 0.0 and is_finite(growth):
+			_growth = maxf(_growth, growth)
+			discs.append(Vector3(at.x, at.y, radius))
 
 
 func _to_meters(around: Array[Vector3]) -> PackedFloat64Array:

@@ -187,6 +187,11 @@ func get_contacts() -> Array:
 	return server().world_get_contacts(_world)
 
 
+## The bodies that the tool touches now.
+func get_touched() -> PackedInt64Array:
+	return server().world_get_touched(_world)
+
+
 ## What happened to contacts since the last call, in time order.
 func take_events() -> Array:
 	return server().world_take_events(_world)

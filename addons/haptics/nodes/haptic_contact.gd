@@ -42,6 +42,15 @@ var penetration: float
 var time: float
 
 
+## The cell that is touched, of a TileMapLayer.
+func get_cell() -> Vector2i:
+	var layer := body as TileMapLayer
+	if layer == null:
+		return Vector2i.ZERO
+	# a little inside of it
+	return layer.local_to_map(layer.to_local(position - normal * 0.5))
+
+
 ## From what the native side reports.
 static func from_report(report: Dictionary, units: HapticUnits, touched: Node2D) -> HapticContact:
 	var contact := HapticContact.new()

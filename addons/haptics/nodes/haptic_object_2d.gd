@@ -8,6 +8,11 @@ extends RigidBody2D
 ## it is computed in the haptic loop and handed to Godot at every physics tick. A planar device lies
 ## flat: set gravity_scale to 0, or the world's gravity_source to match Godot's gravity.
 
+## `tool` began to touch this object.
+signal touch_began(tool: HapticTool2D, contact: HapticContact)
+## `tool` no longer touches it.
+signal touch_ended(tool: HapticTool2D, contact: HapticContact)
+
 const Warnings := preload("warnings.gd")
 const Checks := preload("checks.gd")
 

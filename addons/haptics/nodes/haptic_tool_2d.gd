@@ -8,9 +8,11 @@ extends Area2D
 ## what it touches. The node follows the loop's newest report; do not move it while the world runs.
 ## All signals come on the main thread, in time order.
 
-## A contact closed.
+## The tool began to touch a body, the one of `contact`.
 signal contact_began(contact: HapticContact)
-## A contact opened.
+## The tool no longer touches the body of `contact`, which is null when the body is gone. Comes
+## once for
+## every contact_began, also when the world stops.
 signal contact_ended(contact: HapticContact)
 ## A contact closed with a collision; `impulse` in N s.
 signal impacted(contact: HapticContact, impulse: float)
@@ -64,10 +66,49 @@ func get_haptic_world() -> HapticWorld2D:
 	return HapticWorld2D.find_for(self)
 
 
-## True while something is touched.
-func is_touching() -> bool:
+## True while `body` is touched; without one, while anything is.
+func is_touching(body: Node2D = null) -> bool:
+	if body == null:
+		return not get_contacts().is_empty()
+	return not get_contacts_with(body).is_empty()
+
+
+## Where the tool touches something now. At most 16, in a fixed order; newest report of the loop.
+func get_contacts() -> Array[HapticContact]:
 	var world := get_haptic_world()
-	return world != null and world.get_tool() == self and not world.get_contacts().is_empty()
+	if world == null or world.get_tool() != self:
+		return []
+	return world.get_contacts()
+
+
+## Where the tool touches `body` now.
+func get_contacts_with(body: Node2D) -> Array[HapticContact]:
+	return get_contacts().filter(func(c: HapticContact) -> bool: return c.body == body)
+
+
+## What is touched now, each once.
+func get_touched_bodies() -> Array[Node2D]:
+	var bodies: Array[Node2D] = []
+	for contact: HapticContact in get_contacts():
+		if contact.body != null and not contact.body in bodies:
+			bodies.append(contact.body)
+	return bodies
+
+
+## Force of `body` on the tool, N, in the canvas's axes.
+func get_force_from(body: Node2D) -> Vector2:
+	var force := Vector2.ZERO
+	for contact: HapticContact in get_contacts_with(body):
+		force += contact.force
+	return force
+
+
+## Deepest overlap with `body`, m; 0 when it is not touched.
+func get_penetration_of(body: Node2D) -> float:
+	var deepest := 0.0
+	for contact: HapticContact in get_contacts_with(body):
+		deepest = maxf(deepest, contact.penetration)
+	return deepest
 
 
 ## Pushes an error for every problem of this tool that was not told before.

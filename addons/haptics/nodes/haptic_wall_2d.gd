@@ -7,6 +7,11 @@ extends StaticBody2D
 ## Give it CollisionShape2D or CollisionPolygon2D children. A plain StaticBody2D can be felt too; it
 ## takes its surface from its metadata [code]haptic_surface[/code], else from the world.
 
+## `tool` began to touch this wall.
+signal touch_began(tool: HapticTool2D, contact: HapticContact)
+## `tool` no longer touches it.
+signal touch_ended(tool: HapticTool2D, contact: HapticContact)
+
 const Warnings := preload("warnings.gd")
 const Checks := preload("checks.gd")
 

@@ -17,6 +17,10 @@ signal stopped
 signal fault_raised(fault: String)
 ## Another tool is held; either may be null.
 signal tool_changed(from: HapticTool2D, to: HapticTool2D)
+## More lies within reach of the tool than the loop can hold: of that, `left_out` convex pieces
+## cannot
+## be felt, the farthest. Said when it begins; an error says it too, once.
+signal neighborhood_overflowed(left_out: int)
 
 ## What drives the haptic steps.
 enum Mode {
@@ -80,6 +84,7 @@ const Gateway := preload("gateway.gd")
 const Warnings := preload("warnings.gd")
 const Checks := preload("checks.gd")
 const Session := preload("world_session.gd")
+const NeighborhoodView := preload("neighborhood_view.gd")
 
 ## Group of all haptic worlds in the tree.
 const WORLDS := &"_haptic_worlds"
@@ -115,6 +120,10 @@ var pixels_per_meter: float = 4000.0
 @export var hold_at_start: bool = true
 ## How much of the run is recorded for [method save_recording], s, 0 to 3600.
 @export_range(0.0, 600.0, 0.1, "or_greater", "suffix:s") var record_seconds: float = 0.0
+
+## Draws what the loop knows of the scene: bodies by who moves them, and how far was looked.
+@export var show_neighborhood: bool = false:
+	set = set_show_neighborhood
 
 @export_group("Method")
 ## How device and tool are tied together.
@@ -164,6 +173,7 @@ var _unattended := DisplayServer.get_name() == "headless"
 var _warnings := Warnings.new(self, Checks.of_world.bind(self))
 var _session: Session
 var _wants_start := false
+var _view: NeighborhoodView
 
 
 func _notification(what: int) -> void:
@@ -385,6 +395,38 @@ func get_state() -> PackedFloat64Array:
 ## Bodies in the last snapshot of the neighborhood.
 func get_neighbor_count() -> int:
 	return _session.neighborhood.near_count if is_running() else 0
+
+
+## The convex pieces that the loop knows of, one Dictionary each: body (null when it is gone), kind
+## ("fixed", "kinematic" or "movable"), one_way, half_plane, radius (px) and points (canvas; of a
+## half-plane a point and one along its normal). For pictures, not for every frame of a game.
+func get_neighborhood() -> Array[Dictionary]:
+	var pieces: Array[Dictionary] = []
+	if is_running():
+		pieces = _session.get_neighborhood()
+	return pieces
+
+
+## Where the loop was given a look at the scene: discs on the canvas (x, y, radius, px).
+func get_reach() -> Array[Vector3]:
+	var discs: Array[Vector3] = []
+	if is_running():
+		discs = _session.neighborhood.discs
+	return discs
+
+
+## Draws the neighborhood, or stops it.
+func set_show_neighborhood(shown: bool) -> void:
+	show_neighborhood = shown
+	if Engine.is_editor_hint() or shown == (_view != null):
+		return
+	if shown:
+		_view = NeighborhoodView.new()
+		_view.world = self
+		add_child(_view, false, Node.INTERNAL_MODE_BACK)
+	else:
+		_view.queue_free()
+		_view = null
 
 
 ## Where a hand of kind MOUSE wants the grip, on the canvas (px, rad).

@@ -5,6 +5,7 @@ extends RefCounted
 
 const Gateway := preload("gateway.gd")
 const Neighborhood := preload("../environment/neighborhood.gd")
+const TouchSignals := preload("touch_signals.gd")
 const Reach := preload("../environment/reach.gd")
 const ToolReader := preload("../environment/tool_reader.gd")
 
@@ -27,6 +28,8 @@ var _cursor: HapticHandCursor2D
 var _is_lockstep := false
 var _is_stalled := false
 var _reach := Reach.new()
+var _touches: TouchSignals
+var _was_full := false
 var _faults: PackedStringArray = []
 
 
@@ -58,6 +61,7 @@ func start() -> PackedStringArray:
 		print("%s: %s" % [_world.name, native.get_statistics().get("scheduling_details", "")])
 	native.refresh()
 	state = native.get_state()
+	_touches = TouchSignals.new(tool)
 	if _world.device.follows_mouse(unattended):
 		_cursor = HapticHandCursor2D.new()
 		_world.add_child(_cursor, false, Node.INTERNAL_MODE_BACK)
@@ -68,6 +72,8 @@ func start() -> PackedStringArray:
 func stop() -> void:
 	if _cursor != null:
 		_cursor.queue_free()
+	if _touches != null and is_instance_valid(tool):
+		_touches.finish()
 	neighborhood.clear()
 	native.stop()
 
@@ -93,6 +99,10 @@ func tick(seconds: float) -> PackedStringArray:
 		scale,
 		_gravity(scale)
 	)
+	if (neighborhood.left_out > 0) != _was_full:
+		_was_full = neighborhood.left_out > 0
+		if _was_full:
+			_world.neighborhood_overflowed.emit(neighborhood.left_out)
 	# after the snapshot: it tells of bodies that have not felt these yet
 	neighborhood.give(impulses, scale)
 	if _is_lockstep:
@@ -111,7 +121,7 @@ func show() -> void:
 			state[Gateway.State.TOOL_Y],
 			state[Gateway.State.TOOL_ANGLE]
 		)
-		_emit_events()
+		_touches.emit(native.take_events(), native.get_touched(), units, neighborhood.body_of)
 	_emit_faults()
 
 
@@ -122,6 +132,23 @@ func get_contacts() -> Array[HapticContact]:
 		var body := neighborhood.body_of(report["body"] as int)
 		contacts.append(HapticContact.from_report(report, units, body))
 	return contacts
+
+
+## The convex pieces of the last snapshot, on the canvas.
+func get_neighborhood() -> Array[Dictionary]:
+	var pieces: Array[Dictionary] = []
+	for piece: Dictionary in native.get_neighborhood():
+		var flat: PackedFloat64Array = piece["points"]
+		var points := PackedVector2Array()
+		for i: int in range(0, flat.size() - 1, 2):
+			points.append(units.point_to_canvas(flat[i], flat[i + 1]))
+		if piece["half_plane"] as bool:
+			points[1] = points[0] + units.vector_to_canvas(flat[2], flat[3])
+		piece["points"] = points
+		piece["radius"] = units.to_pixels(piece["radius"] as float)
+		piece["body"] = neighborhood.body_of(piece["body"] as int)
+		pieces.append(piece)
+	return pieces
 
 
 ## Where a pointing hand wants the grip, on the canvas.
@@ -170,21 +197,6 @@ func _gravity(scale: float) -> PackedFloat64Array:
 	pull[0] *= scale * scale
 	pull[1] *= scale * scale
 	return pull
-
-
-func _emit_events() -> void:
-	for event: Dictionary in native.take_events():
-		var body := neighborhood.body_of(event["body"] as int)
-		var contact := HapticContact.from_report(event, units, body)
-		match event["kind"]:
-			"began":
-				tool.contact_began.emit(contact)
-			"ended":
-				tool.contact_ended.emit(contact)
-			"impact":
-				tool.impacted.emit(contact, event["impulse"] as float)
-			"slip":
-				tool.slip_began.emit(contact)
 
 
 func _emit_faults() -> void:

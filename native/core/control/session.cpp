@@ -435,7 +435,9 @@ void Session::write_report(const GateOutput& gate, const Wrench& command) {
     r.contact_count = 0;
     for (int i = 0; i < data_->patches.count && r.contact_count < HapticReport::k_max_contacts; ++i) {
         const Patch& p = data_->patches.patch[static_cast<std::size_t>(i)];
-        if (p.memory.state == ContactState::none || p.body_b < data_->tool.body_count)
+        // movable neighbors touch others too; the list is the tool's
+        if (p.memory.state == ContactState::none || p.body_a >= data_->tool.body_count ||
+            p.body_b < data_->tool.body_count)
             continue;
         ContactReport& c = r.contact_list[static_cast<std::size_t>(r.contact_count++)];
         c.body = data_->neighbors.body[static_cast<std::size_t>(p.body_b - data_->tool.body_count)].id;

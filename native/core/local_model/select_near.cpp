@@ -48,8 +48,9 @@ LeftOut cut(std::vector<Ranked>& near, std::size_t bodies) {
     std::vector<std::size_t> order(near.size());
     for (std::size_t i = 0; i < order.size(); ++i)
         order[i] = i;
-    std::stable_sort(order.begin(), order.end(), [&near](std::size_t one, std::size_t other) {
-        return near[one].distance < near[other].distance;
+    std::sort(order.begin(), order.end(), [&near](std::size_t one, std::size_t other) {
+        return near[one].distance != near[other].distance ? near[one].distance < near[other].distance
+                                                          : one < other;
     });
     enum class Place : std::uint8_t { unseen, in, out };
     std::vector<Place> place(bodies, Place::unseen);

@@ -1,6 +1,8 @@
 #include <haptics/classes/geometry_reader.hpp>
 #include <haptics/classes/haptic_server.hpp>
 
+#include <algorithm>
+
 namespace haptics {
 
 using namespace godot;
@@ -247,6 +249,21 @@ Array HapticServer::world_get_contacts(int64_t world) const {
     return out;
 }
 
+PackedInt64Array HapticServer::world_get_touched(int64_t world) const {
+    PackedInt64Array out;
+    const HapticWorld* w = find(world);
+    if (w == nullptr)
+        return out;
+    const HapticReport& r = w->report();
+    for (std::int32_t i = 0; i < r.contact_count; ++i) {
+        const auto id = static_cast<int64_t>(r.contact_list[static_cast<std::size_t>(i)].body);
+        const auto seen = out.span();
+        if (std::find(seen.begin(), seen.end(), id) == seen.end())
+            out.push_back(id);
+    }
+    return out;
+}
+
 Array HapticServer::world_take_events(int64_t world) {
     HapticWorld* w = find(world);
     return w == nullptr ? Array() : w->take_events();
@@ -351,6 +368,7 @@ void HapticServer::_bind_methods() {
     ClassDB::bind_method(D_METHOD("world_refresh", "world"), &HapticServer::world_refresh);
     ClassDB::bind_method(D_METHOD("world_get_state", "world"), &HapticServer::world_get_state);
     ClassDB::bind_method(D_METHOD("world_get_contacts", "world"), &HapticServer::world_get_contacts);
+    ClassDB::bind_method(D_METHOD("world_get_touched", "world"), &HapticServer::world_get_touched);
     ClassDB::bind_method(D_METHOD("world_take_events", "world"), &HapticServer::world_take_events);
     ClassDB::bind_method(D_METHOD("world_take_impulses", "world"), &HapticServer::world_take_impulses);
     ClassDB::bind_method(D_METHOD("world_get_faults", "world"), &HapticServer::world_get_faults);

@@ -90,6 +90,7 @@ class HapticServer : public godot::Object {
     void world_refresh(int64_t world);
     godot::PackedFloat64Array world_get_state(int64_t world) const;
     godot::Array world_get_contacts(int64_t world) const;
+    godot::PackedInt64Array world_get_touched(int64_t world) const;
     godot::Array world_take_events(int64_t world);
     godot::PackedFloat64Array world_take_impulses(int64_t world);
     godot::PackedStringArray world_get_faults(int64_t world) const;
