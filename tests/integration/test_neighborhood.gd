@@ -120,20 +120,29 @@ func test_the_reach_covers_the_way_of_a_tool_under_full_acceleration() -> void:
 	# 8 N on 0.25 kg from 0.4 m/s, for two ticks and the loop's latency
 	var time := 2.0 / 60.0 + 0.002
 	var way := 0.4 * time + 0.5 * 32.0 * time * time
-	assert_almost_eq(reach.distance(0.02, 0.4, 1.0 / 60.0), 0.02 + way + 0.01, 1e-9)
+	assert_almost_eq(reach.distance(0.02, 0.4, 2.0, 1.0 / 60.0), 0.02 + way + 0.01, 1e-9)
+
+
+func test_the_reach_does_not_go_beyond_the_top_speed() -> void:
+	var reach := Reach.new()
+	# in ticks of 50 ms: 50 ms from 0.4 to 2 m/s, 1.2 m/s on average, and the rest at 2 m/s
+	var way := 1.2 * 0.05 + 2.0 * (0.102 - 0.05)
+	assert_almost_eq(reach.distance(0.02, 0.4, 2.0, 0.05), 0.02 + way + 0.01, 1e-9)
+	# one that is faster already stays so
+	assert_almost_eq(reach.distance(0.0, 3.0, 2.0, 0.05), 3.0 * 0.102 + 0.01, 1e-9)
 
 
 func test_the_reach_grows_when_ticks_come_late_and_shrinks_again() -> void:
 	var reach := Reach.new()
-	var calm := reach.distance(0.0, 1.0, 1.0 / 60.0)
+	var calm := reach.distance(0.0, 1.0, 2.0, 1.0 / 60.0)
 	# three ticks in a frame of 50 ms, again and again
 	for i: int in 10:
 		for tick: int in 3:
 			reach.note(0.05 * i + 0.0001 * tick)
-	assert_gt(reach.distance(0.0, 1.0, 1.0 / 60.0), calm + 0.03)
+	assert_gt(reach.distance(0.0, 1.0, 2.0, 1.0 / 60.0), calm + 0.03)
 	for i: int in 180:
 		reach.note(1.0 + i / 60.0)
-	assert_almost_eq(reach.distance(0.0, 1.0, 1.0 / 60.0), calm, 1e-6)
+	assert_almost_eq(reach.distance(0.0, 1.0, 2.0, 1.0 / 60.0), calm, 1e-6)
 
 
 func test_the_picture_holds_every_piece_where_it_is() -> void:

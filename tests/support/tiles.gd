@@ -2,8 +2,7 @@ extends RefCounted
 ## Tile maps built in code.
 
 ## Tiles of a tile set made by make_set(): whole, half (its lower half), one-way, and one with a
-## surface of
-## its own in the custom data layer haptic_surface.
+## surface of its own in the custom data layer haptic_surface.
 const WHOLE := Vector2i(0, 0)
 const HALF := Vector2i(1, 0)
 const ONE_WAY := Vector2i(2, 0)

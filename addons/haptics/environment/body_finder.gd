@@ -1,8 +1,7 @@
 @tool
 extends RefCounted
 ## Finds the bodies around the tool by the engine's broad phase, and gives each a reader and a
-## number that
-## stay as long as the body.
+## number that stay as long as the body.
 
 const BodyReader := preload("body_reader.gd")
 const FixedBody := preload("fixed_body.gd")

@@ -39,8 +39,7 @@ func _init(native: Gateway, units: HapticUnits) -> void:
 
 
 ## Publishes what lies within the discs (canvas: x, y, radius in px) and what `mask` selects.
-## Returns
-## what is wrong, each with the path of its node.
+## Returns what is wrong, each with the path of its node.
 func publish(
 	world_2d: World2D,
 	around: Array[Vector3],

@@ -2,15 +2,12 @@
 extends RefCounted
 ## How far from the tool something may matter before the next look around.
 ##
-## The tool has to be met by whatever it can run into until the next snapshot counts. From now that
-## takes
-## the time to the next tick, one tick more in case that one comes late, and the latency of the
-## loop:
-## t. With speed v and the acceleration a that a hand can give it, it gets v t + a t² / 2 far, and
-## its farthest
-## point is one extent away from its origin. Ticks are bunched when frames are slow, so the longest
-## pause
-## between two looks of the last second counts, not the length of a tick.
+## The tool has to be met by whatever it can run into until the next snapshot counts. That takes the
+## time to the next tick, one tick more in case that one comes late, and the latency of the loop: t.
+## From speed v it gets faster with the acceleration a of a strong hand, up to the speed that the
+## output gate allows, and its farthest point is one extent away from its origin. Ticks are bunched
+## when frames are slow, so the longest pause between two looks of the last second counts, not the
+## length of a tick.
 
 ## Looked around in any case, m.
 const MARGIN := 0.01
@@ -36,8 +33,10 @@ func note(now: float) -> void:
 	_last_look = now
 
 
-## Reach from the tool's origin, m: `extent` of the tool, `speed` of its origin (m/s), `tick` (s of
-## real time).
-func distance(extent: float, speed: float, tick: float) -> float:
+## Reach from the tool's origin, m: `extent` of the tool, `speed` of its origin and the highest that
+## it may have (m/s), `tick` (s of real time).
+func distance(extent: float, speed: float, top_speed: float, tick: float) -> float:
 	var time := maxf(tick, _pause) + tick + _LATENCY
-	return extent + speed * time + 0.5 * _ACCELERATION * time * time + MARGIN
+	var rise := clampf((top_speed - speed) / _ACCELERATION, 0.0, time)
+	var way := speed * time + _ACCELERATION * rise * (time - 0.5 * rise)
+	return extent + way + MARGIN

@@ -21,8 +21,7 @@ static func find_overlap(tool: HapticTool2D, root: Node, slack_pixels: float) ->
 
 
 ## Bodies that the tool's mask selects and that have nothing but separation rays: the engine's
-## broad phase
-## does not even find those.
+## broad phase does not even find those.
 static func find_rays_alone(tool: HapticTool2D, root: Node) -> Array[PhysicsBody2D]:
 	var found: Array[PhysicsBody2D] = []
 	for node: Node in root.find_children("*", "PhysicsBody2D", true, false):

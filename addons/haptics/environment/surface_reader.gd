@@ -1,8 +1,7 @@
 @tool
 extends RefCounted
 ## Which surface a body has: its property, else its metadata, else the world's default. (Tiles have
-## theirs
-## in a custom data layer of the same name; see tile_layer.gd.)
+## theirs in a custom data layer of the same name; see tile_layer.gd.)
 
 ## Name of the property of scripts that are not ours, of the metadata, and of the tiles' custom
 ## data layer.

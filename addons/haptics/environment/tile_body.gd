@@ -3,8 +3,7 @@ extends "fixed_body.gd"
 ## The cells of a TileMapLayer that share a surface, at most one square of cells.
 ##
 ## Godot merges the cells of 16 x 16 into one body, and its shapes tell neither the surface nor the
-## side
-## they let pass: what is felt is read from the tiles.
+## side they let pass: what is felt is read from the tiles.
 
 # numbers of shapes in a cell: physics layers and polygons of each
 const _PER_LAYER := 16

@@ -25,8 +25,7 @@ func _init(layer: TileMapLayer) -> void:
 
 
 ## The bodies of the squares within `radius` px of `center` (canvas) that `mask` selects. `adopt`
-## gives a
-## new TileBody its number: (TileMapLayer) -> TileBody; `drop` takes one back.
+## gives a new TileBody its number: (TileMapLayer) -> TileBody; `drop` takes one back.
 func find_near(
 	center: Vector2, radius: float, mask: int, adopt: Callable, drop: Callable
 ) -> Array[BodyReader]:

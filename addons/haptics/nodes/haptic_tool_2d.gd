@@ -11,8 +11,7 @@ extends Area2D
 ## The tool began to touch a body, the one of `contact`.
 signal contact_began(contact: HapticContact)
 ## The tool no longer touches the body of `contact`, which is null when the body is gone. Comes
-## once for
-## every contact_began, also when the world stops.
+## once for every contact_began, also when the world stops.
 signal contact_ended(contact: HapticContact)
 ## A contact closed with a collision; `impulse` in N s.
 signal impacted(contact: HapticContact, impulse: float)

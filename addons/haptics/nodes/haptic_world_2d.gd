@@ -18,8 +18,7 @@ signal fault_raised(fault: String)
 ## Another tool is held; either may be null.
 signal tool_changed(from: HapticTool2D, to: HapticTool2D)
 ## More lies within reach of the tool than the loop can hold: of that, `left_out` convex pieces
-## cannot
-## be felt, the farthest. Said when it begins; an error says it too, once.
+## cannot be felt, the farthest. Said when it begins; an error says it too, once.
 signal neighborhood_overflowed(left_out: int)
 
 ## What drives the haptic steps.

@@ -1,8 +1,7 @@
 @tool
 extends Node2D
 ## Draws what the haptic loop knows of the scene: where it was looked for, and every convex piece
-## of the
-## last snapshot, in the color of who moves its body.
+## of the last snapshot, in the color of who moves its body.
 
 const _COLORS: Dictionary[String, Color] = {
 	"fixed": Color(0.45, 0.66, 1.0),

@@ -1,12 +1,10 @@
 @tool
 extends RefCounted
 ## Turns what the loop reports into signals, on the main thread, in time order: those of the tool,
-## and
-## touch_began and touch_ended of every body whose class or script has them.
+## and touch_began and touch_ended of every body whose class or script has them.
 ##
 ## For each body touch_began and touch_ended alternate, whatever the queue of events lost while the
-## main
-## thread was busy: what the report touches and nobody was told of is told then.
+## main thread was busy: what the report touches and nobody was told of is told then.
 
 const _BEGAN := &"touch_began"
 const _ENDED := &"touch_ended"
@@ -25,8 +23,7 @@ func _init(tool: HapticTool2D) -> void:
 
 
 ## `events` in time order, a contact each; `touched` are the bodies of the newest report. `body_of`
-## finds
-## a body by its number.
+## finds a body by its number.
 func emit(events: Array, touched: PackedInt64Array, units: HapticUnits, body_of: Callable) -> void:
 	for event: Dictionary in events:
 		var number: int = event["body"]

@@ -29,6 +29,7 @@ var _is_lockstep := false
 var _is_stalled := false
 var _reach := Reach.new()
 var _touches: TouchSignals
+var _top_speed := 0.0
 var _was_full := false
 var _faults: PackedStringArray = []
 
@@ -62,6 +63,8 @@ func start() -> PackedStringArray:
 	native.refresh()
 	state = native.get_state()
 	_touches = TouchSignals.new(tool)
+	var limits := _world.safety if _world.safety != null else HapticSafetyLimits.new()
+	_top_speed = limits.max_speed * _world.mapping_scale
 	if _world.device.follows_mouse(unattended):
 		_cursor = HapticHandCursor2D.new()
 		_world.add_child(_cursor, false, Node.INTERNAL_MODE_BACK)
@@ -167,7 +170,7 @@ func _reach_of_tool(tick_seconds: float) -> Array[Vector3]:
 	var lever := units.to_meters(tool.center_of_mass.length())
 	speed += absf(state[Gateway.State.VELOCITY_ANGLE]) * lever
 	var extent := units.to_meters(ToolReader.extent(tool))
-	var radius := units.to_pixels(_reach.distance(extent, speed, tick_seconds))
+	var radius := units.to_pixels(_reach.distance(extent, speed, _top_speed, tick_seconds))
 	return [Vector3(place.x, place.y, radius)]
 
 
