@@ -96,6 +96,7 @@ void DraftList::add(const Draft& added) {
             return;
         }
         const double reach = std::max(present.reach, added.reach);
+        const bool one_way = present.one_way && added.one_way;
         if (leads(added, present)) {
             Draft merged = added;
             join(merged.patch, present.patch);
@@ -104,6 +105,7 @@ void DraftList::add(const Draft& added) {
             join(present.patch, added.patch);
         }
         present.reach = reach;
+        present.one_way = one_way;
         return;
     }
     if (count < k_max_patches) {

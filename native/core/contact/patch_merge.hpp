@@ -24,6 +24,7 @@ struct Draft {
     double reach{0.0};
     /// Surface of b alone: only equal surfaces merge.
     Surface surface_b;
+    /// All of its matter is one-way.
     bool one_way{false};
     /// Index of the last step's patch that this one goes on from, -1 when it is new.
     int previous{-1};

@@ -64,8 +64,20 @@ double distance(const Patch& p, const Patch& q) {
     return nearest;
 }
 
+/// What lies on a plane has come from its free side, whichever piece it lay on; contact with other matter
+/// near by tells nothing of that.
+bool came_from_free_side(const Remembered& old, const Draft& draft) {
+    const PatchSide& p = old.patch->side;
+    const PatchSide& q = draft.patch.side;
+    if (p.id_b == q.id_b && p.piece_b == q.piece_b)
+        return true;
+    return std::abs(cross(old.normal, draft.plane_normal)) < k_same_plane_turn &&
+           std::abs(old.offset - draft.plane_offset) < k_same_plane;
+}
+
 bool may_go_on(const Remembered& old, const Draft& draft) {
-    return same_pair(old.patch->side, draft.patch.side) && old.normal.dot(draft.patch.normal) >= k_same_way;
+    return same_pair(old.patch->side, draft.patch.side) && old.normal.dot(draft.patch.normal) >= k_same_way &&
+           (!draft.one_way || came_from_free_side(old, draft));
 }
 
 double mismatch(const Remembered& old, const Draft& draft) {
