@@ -8,6 +8,9 @@ const SurfaceReader := preload("surface_reader.gd")
 
 ## Cells along the side of a square; numbers of shapes in tile_body.gd rely on it.
 const SQUARE := 8
+# cells that were set or erased at run time have no signal: every square near is compared in so many
+# looks
+const _LOOKS_TO_COMPARE := 8
 # most looks along one axis when the cells in a region are found
 const _MOST_LOOKS := 64
 
@@ -17,6 +20,9 @@ var node: TileMapLayer
 var _squares: Dictionary[Vector2i, Array] = {}
 var _mask := 0
 var _is_stale := false
+# what the cells of a square were when they were read
+var _prints: Dictionary[Vector2i, int] = {}
+var _look := 0
 
 
 func _init(layer: TileMapLayer) -> void:
@@ -36,9 +42,14 @@ func find_near(
 		_mask = mask
 		_is_stale = false
 		_read_again(adopt, drop)
+	_look += 1
+	var turn := _look
 	for square: Vector2i in _squares_near(center, radius):
+		turn += 1
 		if not _squares.has(square):
 			_squares[square] = []
+			_read(square, adopt, drop)
+		elif turn % _LOOKS_TO_COMPARE == 0 and _print_of(square) != _prints[square]:
 			_read(square, adopt, drop)
 		for body: TileBody in _squares[square]:
 			found.append(body)
@@ -65,6 +76,7 @@ func _read_again(adopt: Callable, drop: Callable) -> void:
 
 # sorts the cells of a square by their surface
 func _read(square: Vector2i, adopt: Callable, drop: Callable) -> void:
+	_prints[square] = _print_of(square)
 	var layers := 0
 	for index: int in mini(node.tile_set.get_physics_layers_count(), 16):
 		if node.tile_set.get_physics_layer_collision_layer(index) & _mask != 0:
@@ -101,6 +113,21 @@ func _read(square: Vector2i, adopt: Callable, drop: Callable) -> void:
 		body.physics_layers = layers
 		body.is_dirty = true
 	_squares[square] = kept
+
+
+func _print_of(square: Vector2i) -> int:
+	var marks := PackedInt32Array()
+	for y: int in SQUARE:
+		for x: int in SQUARE:
+			var cell := square * SQUARE + Vector2i(x, y)
+			var source := node.get_cell_source_id(cell)
+			marks.append(source)
+			if source >= 0:
+				var at := node.get_cell_atlas_coords(cell)
+				marks.append(at.x)
+				marks.append(at.y)
+				marks.append(node.get_cell_alternative_tile(cell))
+	return hash(marks)
 
 
 func _body_with(bodies_there: Array, own: HapticSurface) -> TileBody:
