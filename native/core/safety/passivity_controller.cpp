@@ -1,7 +1,8 @@
-// With E the energy created so far (EnergyLedger) and what may be an error of reading, e = sum |F|max q, taken
-// off it, a damper -g M v takes g v.Mv T in the step; g = (E - e) / (T v.Mv) takes all of the rest at once. g T
-// is the share of the momentum that goes: at most k_most, and none from a handle that hardly moves, whose
-// velocity is noise. What remains is taken in the next steps; the ledger books what the gate let through.
+// With E the energy created so far (EnergyLedger) and what may be an error of reading, e = sum |F|max q,
+// taken off it, a damper -g M v takes g v.Mv T in the step; g = (E - e) / (T v.Mv) takes all of the rest at
+// once. g T is the share of the momentum that goes: at most k_most, and none from a handle that hardly moves,
+// whose velocity is noise. What remains is taken in the next steps; the ledger books what the gate let
+// through.
 
 #include <haptics/core/safety/passivity_controller.hpp>
 

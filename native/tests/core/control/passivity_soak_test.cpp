@@ -1,5 +1,5 @@
-// Ten minutes on the paper's wall with a hand that stiffens and softens: the loop creates no energy beyond what
-// the encoder leaves uncertain. A controller that is active by design fails the same check.
+// Ten minutes on the paper's wall with a hand that stiffens and softens: the loop creates no energy beyond
+// what the encoder leaves uncertain. A controller that is active by design fails the same check.
 
 #include <haptics/shared/observed_tool.hpp>
 
@@ -63,13 +63,11 @@ TEST_SUITE("passivity soak") {
         CHECK(plain.injected <= plain.allowed);
         CHECK(plain.faults == Fault::none);
         o.observer = true;
-        for (const double rate : {500.0, 1000.0}) {
-            o.rate_hz = rate;
-            const Soak observed = soak(o, 600.0);
-            MESSAGE("observer, " << rate << " Hz: " << observed.injected << " J of " << observed.allowed);
-            CHECK(observed.injected <= observed.allowed);
-            CHECK(observed.faults == Fault::none);
-        }
+        o.rate_hz = 1000.0;
+        const Soak observed = soak(o, 600.0);
+        MESSAGE("observer, 1 kHz: " << observed.injected << " J of " << observed.allowed);
+        CHECK(observed.injected <= observed.allowed);
+        CHECK(observed.faults == Fault::none);
     }
 
     TEST_CASE("direct rendering of the same wall, active at this rate, fails the check within a minute") {

@@ -43,7 +43,8 @@ Outcome swing(bool controlled) {
         late = -stiffness * seen;
         if (controlled)
             force += controller
-                         .damp(ledger.created(), Wrench(force, 0.0, 0.0), Twist((seen - last) / h, 0.0, 0.0), mass, h)
+                         .damp(ledger.created(), Wrench(force, 0.0, 0.0), Twist((seen - last) / h, 0.0, 0.0),
+                               mass, h)
                          .x();
         last = seen;
         ledger.set_force(Wrench(force, 0.0, 0.0));
