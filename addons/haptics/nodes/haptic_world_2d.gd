@@ -83,6 +83,7 @@ const Gateway := preload("gateway.gd")
 const Warnings := preload("warnings.gd")
 const Checks := preload("checks.gd")
 const Session := preload("world_session.gd")
+const WorldSettings := preload("world_settings.gd")
 const NeighborhoodView := preload("neighborhood_view.gd")
 
 ## Group of all haptic worlds in the tree.
@@ -90,10 +91,6 @@ const WORLDS := &"_haptic_worlds"
 ## Group of all tools in the tree.
 const TOOLS := &"_haptic_tools"
 
-const _COUPLINGS: PackedStringArray = ["four_channel", "virtual_coupling", "direct"]
-const _CONTACTS: PackedStringArray = ["penalty_impulse", "penalty"]
-const _INTEGRATORS: PackedStringArray = ["linearly_implicit", "semi_implicit", "exact"]
-const _METHODS: PackedStringArray = ["poisson", "mass_weighted", "paper"]
 const _AFTER_ALL_ELSE := 1000
 
 ## What the user holds.
@@ -147,14 +144,16 @@ var coupling_rotation_stiffness: float = 0.0
 var coupling_rotation_damping: float = 0.0
 ## Longest window of the velocity estimate, samples: longer is quieter and lags more.
 @export_range(1, 63) var velocity_window: int = 2
-## Estimates the handle's motion and the force of the hand with a model of the device, and chooses the
-## coupling that goes with it: many times stiffer walls, and four channels without a force sensor. Needs a
-## device whose mass is known to within [member observer_mass_error].
+## Estimates the handle's motion and the force of the hand with a model of the device, and chooses
+## the coupling that goes with it: many times stiffer walls, and four channels without a force
+## sensor. Needs a device whose mass is known to within [member observer_mass_error].
 @export var observer: bool = false
 ## Force noise that coarse encoders may cause (standard deviation); more allows a stiffer coupling.
 @export_range(0.01, 1.0, 0.01, "or_greater", "suffix:N") var observer_noise: float = 0.05
 ## Largest relative error of the device's mass that has to stay stable.
 @export_range(0.0, 0.5, 0.01) var observer_mass_error: float = 0.25
+## Damps the handle while more energy came out of the loop than went into it.
+@export var passivity_control: bool = false
 
 @export_group("Gravity")
 ## Where the gravity of the tool and of movable bodies around it comes from.
@@ -457,36 +456,7 @@ func set_unattended(unattended: bool) -> void:
 
 ## As the native side takes it.
 func to_settings() -> Dictionary:
-	var limits := safety if safety != null else HapticSafetyLimits.new()
-	var tool := get_tool()
-	var heaviest := tool.mass if tool != null else 0.0
-	var largest := tool.inertia if tool != null else 0.0
-	if device != null:
-		heaviest = maxf(heaviest, device.moving_mass(is_unattended()))
-		largest = maxf(largest, device.moving_inertia(is_unattended()))
-	return {
-		"rate": rate,
-		"priority": HapticSettings.number(HapticSettings.PRIORITY),
-		"cpu": HapticSettings.number(HapticSettings.PROCESSOR),
-		"coupling": _COUPLINGS[coupling],
-		"coupling_stiffness":
-		PackedFloat64Array([coupling_stiffness, coupling_stiffness, coupling_rotation_stiffness]),
-		"coupling_damping":
-		PackedFloat64Array([coupling_damping, coupling_damping, coupling_rotation_damping]),
-		"velocity_window": velocity_window,
-		"observer": observer,
-		"observer_noise": observer_noise,
-		"observer_mass_error": observer_mass_error,
-		"mapping_scale": mapping_scale,
-		"mapping_rotation": -mapping_rotation,
-		"arm_at_start": arm_at_start,
-		"hold_at_start": hold_at_start,
-		"contact": _CONTACTS[contact],
-		"integrator": _INTEGRATORS[integrator],
-		"collision_method": _METHODS[collision_method],
-		"collision_speed": collision_speed,
-		"safety": limits.to_settings(clampf(heaviest, 0.001, 100.0), clampf(largest, 1e-6, 10.0)),
-	}
+	return WorldSettings.of(self)
 
 
 func _value(index: Gateway.State) -> float:

@@ -284,8 +284,10 @@ CouplingDesign design_coupling(const LoopFigures& figures) {
                 if (std::isfinite(now.noise))
                     candidates.push_back({now, std::sqrt(now.stiffness_5_hz * now.stiffness_30_hz)});
             }
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.merit > b.merit; });
+    // equal merits in a fixed order
+    std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+        return a.merit != b.merit ? a.merit > b.merit : a.design.stiffness < b.design.stiffness;
+    });
     // a reading so coarse that nothing is quiet enough: twice the noise, until something holds
     double noise = figures.noise;
     for (int doubled = 0; doubled < 20; ++doubled, noise *= 2.0)

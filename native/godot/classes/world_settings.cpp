@@ -175,6 +175,7 @@ WorldSettings read_world_settings(const Dictionary& from, Problems& problems) {
     w.session.observer.enabled = r.flag("observer", w.session.observer.enabled);
     w.session.observer.noise = r.number("observer_noise", w.session.observer.noise);
     w.session.observer.mass_error = r.number("observer_mass_error", w.session.observer.mass_error);
+    w.session.passivity_control = r.flag("passivity_control", w.session.passivity_control);
     w.session.arm_at_start = r.flag("arm_at_start", w.session.arm_at_start);
     w.session.hold_at_start = r.flag("hold_at_start", w.session.hold_at_start);
     w.model.contact_mode =

@@ -1,0 +1,45 @@
+@tool
+extends RefCounted
+## The settings of a world as the native side takes them.
+
+# in the order of the enums of HapticWorld2D
+const _COUPLINGS: PackedStringArray = ["four_channel", "virtual_coupling", "direct"]
+const _CONTACTS: PackedStringArray = ["penalty_impulse", "penalty"]
+const _INTEGRATORS: PackedStringArray = ["linearly_implicit", "semi_implicit", "exact"]
+const _METHODS: PackedStringArray = ["poisson", "mass_weighted", "paper"]
+
+
+static func of(world: HapticWorld2D) -> Dictionary:
+	var limits := world.safety if world.safety != null else HapticSafetyLimits.new()
+	var tool := world.get_tool()
+	var heaviest := tool.mass if tool != null else 0.0
+	var largest := tool.inertia if tool != null else 0.0
+	if world.device != null:
+		heaviest = maxf(heaviest, world.device.moving_mass(world.is_unattended()))
+		largest = maxf(largest, world.device.moving_inertia(world.is_unattended()))
+	return {
+		"rate": world.rate,
+		"priority": HapticSettings.number(HapticSettings.PRIORITY),
+		"cpu": HapticSettings.number(HapticSettings.PROCESSOR),
+		"coupling": _COUPLINGS[world.coupling],
+		"coupling_stiffness": _axes(world.coupling_stiffness, world.coupling_rotation_stiffness),
+		"coupling_damping": _axes(world.coupling_damping, world.coupling_rotation_damping),
+		"velocity_window": world.velocity_window,
+		"observer": world.observer,
+		"passivity_control": world.passivity_control,
+		"observer_noise": world.observer_noise,
+		"observer_mass_error": world.observer_mass_error,
+		"mapping_scale": world.mapping_scale,
+		"mapping_rotation": -world.mapping_rotation,
+		"arm_at_start": world.arm_at_start,
+		"hold_at_start": world.hold_at_start,
+		"contact": _CONTACTS[world.contact],
+		"integrator": _INTEGRATORS[world.integrator],
+		"collision_method": _METHODS[world.collision_method],
+		"collision_speed": world.collision_speed,
+		"safety": limits.to_settings(clampf(heaviest, 0.001, 100.0), clampf(largest, 1e-6, 10.0)),
+	}
+
+
+static func _axes(along: float, around: float) -> PackedFloat64Array:
+	return PackedFloat64Array([along, along, around])
