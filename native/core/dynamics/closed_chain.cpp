@@ -7,14 +7,18 @@
 /// Lagrange's equations give
 ///     sum_j D_ij phi_j'' = force_i - force_{i+1} + g . mu_i' - sum_{j<i} (l_j x mu_i) w_j^2 + sum_{j>i} (l_i
 ///     x mu_j) w_j^2,
-/// and q_i'' = phi_i'' - phi_{i-1}''. One, two and three bodies are solved with cofactors and one division,
-/// four by 2 x 2 blocks.
+/// and q_i'' = phi_i'' - phi_{i-1}''.
+///
+/// One to three bodies step in a shorter way: see short_chain.cpp.
 
 #include <haptics/core/dynamics/closed_chain.hpp>
 #include <haptics/core/dynamics/multiversion.hpp>
 #include <haptics/core/dynamics/sincos.hpp>
 
 #include <cmath>
+
+#include "dynamics/closed_chain_solve.hpp"
+#include "dynamics/short_chain.hpp"
 
 // Packing these scalars into vectors sends them through memory and costs a third of the time.
 #if defined(__GNUC__) && !defined(__clang__)
@@ -24,8 +28,7 @@
 namespace haptics {
 namespace {
 
-/// q'' of N bodies into `acceleration`, from the cosines and sines of their absolute angles. The differences
-/// of phi'' are taken before the division, which they need not wait for.
+/// q'' of N bodies into `acceleration`, from the cosines and sines of their absolute angles.
 template <int N>
 HAPTICS_ALWAYS_INLINE void chain_acceleration(const LinkageModel& model, const Lanes& cosine,
                                               const Lanes& sine, const double* rate, const double* force,
@@ -71,51 +74,7 @@ HAPTICS_ALWAYS_INLINE void chain_acceleration(const LinkageModel& model, const L
             d[i][j] = lx[i] * mx[j] + ly[i] * my[j];
         }
     }
-    if constexpr (N == 1) {
-        acceleration[0] = right[0] / d[0][0];
-    } else if constexpr (N == 2) {
-        const double inverse = 1.0 / (d[0][0] * d[1][1] - d[0][1] * d[0][1]);
-        const double first = d[1][1] * right[0] - d[0][1] * right[1];
-        const double second = d[0][0] * right[1] - d[0][1] * right[0];
-        acceleration[0] = first * inverse;
-        acceleration[1] = (second - first) * inverse;
-    } else if constexpr (N == 3) {
-        const double c00 = d[1][1] * d[2][2] - d[1][2] * d[1][2];
-        const double c01 = d[0][2] * d[1][2] - d[0][1] * d[2][2];
-        const double c02 = d[0][1] * d[1][2] - d[0][2] * d[1][1];
-        const double c11 = d[0][0] * d[2][2] - d[0][2] * d[0][2];
-        const double c12 = d[0][1] * d[0][2] - d[0][0] * d[1][2];
-        const double c22 = d[0][0] * d[1][1] - d[0][1] * d[0][1];
-        const double inverse = 1.0 / (d[0][0] * c00 + (d[0][1] * c01 + d[0][2] * c02));
-        const double first = c00 * right[0] + (c01 * right[1] + c02 * right[2]);
-        const double second = c01 * right[0] + (c11 * right[1] + c12 * right[2]);
-        const double third = c02 * right[0] + (c12 * right[1] + c22 * right[2]);
-        acceleration[0] = first * inverse;
-        acceleration[1] = (second - first) * inverse;
-        acceleration[2] = (third - second) * inverse;
-    } else {
-        static_assert(N == 4);
-        // A = first two, B = last two, E between them: S = B - E^T A^-1 E
-        const double a = 1.0 / (d[0][0] * d[1][1] - d[0][1] * d[0][1]);
-        const double f00 = (d[1][1] * d[0][2] - d[0][1] * d[1][2]) * a;
-        const double f10 = (d[0][0] * d[1][2] - d[0][1] * d[0][2]) * a;
-        const double f01 = (d[1][1] * d[0][3] - d[0][1] * d[1][3]) * a;
-        const double f11 = (d[0][0] * d[1][3] - d[0][1] * d[0][3]) * a;
-        const double s00 = d[2][2] - (d[0][2] * f00 + d[1][2] * f10);
-        const double s01 = d[2][3] - (d[0][2] * f01 + d[1][2] * f11);
-        const double s11 = d[3][3] - (d[0][3] * f01 + d[1][3] * f11);
-        const double r2 = right[2] - (f00 * right[0] + f10 * right[1]);
-        const double r3 = right[3] - (f01 * right[0] + f11 * right[1]);
-        const double s = 1.0 / (s00 * s11 - s01 * s01);
-        const double third = (s11 * r2 - s01 * r3) * s;
-        const double fourth = (s00 * r3 - s01 * r2) * s;
-        const double first = (d[1][1] * right[0] - d[0][1] * right[1]) * a - (f00 * third + f01 * fourth);
-        const double second = (d[0][0] * right[1] - d[0][1] * right[0]) * a - (f10 * third + f11 * fourth);
-        acceleration[0] = first;
-        acceleration[1] = second - first;
-        acceleration[2] = third - second;
-        acceleration[3] = fourth - third;
-    }
+    solve_closed_chain<N>(d, right, acceleration);
 }
 
 template <int N>
@@ -128,16 +87,15 @@ HAPTICS_ALWAYS_INLINE void accelerate(const LinkageModel& model, const LinkageDa
     chain_acceleration<N>(model, cosine, sine, data.rate.data() + 1, force, acceleration);
 }
 
-/// A whole semi-implicit step, kept in registers.
-template <int N>
-HAPTICS_ALWAYS_INLINE void advance(const LinkageModel& model, LinkageData& data, const double* force,
-                                   double dt, double* acceleration) {
+/// A whole semi-implicit step of four bodies, kept in registers.
+HAPTICS_ALWAYS_INLINE void advance_four(const LinkageModel& model, LinkageData& data, const double* force,
+                                        double dt, double* acceleration) {
     double* q = data.position.data();
     double* v = data.velocity.data();
-    double angle[4]{};
-    double rate[4]{};
+    double angle[4];
+    double rate[4];
     bool in_range = true;
-    for (int i = 0; i < N; ++i) {
+    for (int i = 0; i < 4; ++i) {
         const double turn = model.turn_offset[i + 1] + q[i];
         angle[i] = i > 0 ? angle[i - 1] + turn : turn;
         rate[i] = i > 0 ? rate[i - 1] + v[i] : v[i];
@@ -148,7 +106,7 @@ HAPTICS_ALWAYS_INLINE void advance(const LinkageModel& model, LinkageData& data,
     Lanes cosine;
     detail::sincos_in_range<Lanes, LaneBits>(x, sine, cosine);
     if (!in_range) [[unlikely]] {
-        for (int i = 0; i < N; ++i) {
+        for (int i = 0; i < 4; ++i) {
             double s;
             double c;
             fast_sincos(angle[i], s, c);
@@ -156,9 +114,9 @@ HAPTICS_ALWAYS_INLINE void advance(const LinkageModel& model, LinkageData& data,
             cosine[i] = c;
         }
     }
-    double a[static_cast<std::size_t>(N)];
-    chain_acceleration<N>(model, cosine, sine, rate, force, a);
-    for (int i = 0; i < N; ++i) {
+    double a[4];
+    chain_acceleration<4>(model, cosine, sine, rate, force, a);
+    for (int i = 0; i < 4; ++i) {
         acceleration[i] = a[i];
         v[i] += dt * a[i];
         q[i] += dt * v[i];
@@ -179,28 +137,14 @@ HAPTICS_ALWAYS_INLINE void accelerate_any(const LinkageModel& model, const Linka
     }
 }
 
-HAPTICS_ALWAYS_INLINE void advance_any(const LinkageModel& model, LinkageData& data, const double* force,
-                                       double dt, double* acceleration) {
-    switch (model.body_count) {
-    case 1:
-        return advance<1>(model, data, force, dt, acceleration);
-    case 2:
-        return advance<2>(model, data, force, dt, acceleration);
-    case 3:
-        return advance<3>(model, data, force, dt, acceleration);
-    default:
-        return advance<4>(model, data, force, dt, acceleration);
-    }
-}
-
 #if HAPTICS_MULTIVERSION
 HAPTICS_AVX2 void accelerate_avx2(const LinkageModel& model, const LinkageData& data, const double* force,
                                   double* acceleration) {
     accelerate_any(model, data, force, acceleration);
 }
-HAPTICS_AVX2 void advance_avx2(const LinkageModel& model, LinkageData& data, const double* force, double dt,
-                               double* acceleration) {
-    advance_any(model, data, force, dt, acceleration);
+HAPTICS_AVX2 void advance_four_avx2(const LinkageModel& model, LinkageData& data, const double* force,
+                                    double dt, double* acceleration) {
+    advance_four(model, data, force, dt, acceleration);
 }
 #endif
 
@@ -220,12 +164,15 @@ void closed_chain_acceleration(const LinkageModel& model, const LinkageData& dat
 void closed_chain_step(const LinkageModel& model, LinkageData& data, const LinkageVector& force, double dt,
                        LinkageVector& acceleration) {
     acceleration.resize(model.freedoms);
+    if (model.body_count < 4) {
+        return short_chain_step(model, data, force.data(), dt, acceleration.data());
+    }
 #if HAPTICS_MULTIVERSION
     if (k_has_avx2) {
-        return advance_avx2(model, data, force.data(), dt, acceleration.data());
+        return advance_four_avx2(model, data, force.data(), dt, acceleration.data());
     }
 #endif
-    advance_any(model, data, force.data(), dt, acceleration.data());
+    advance_four(model, data, force.data(), dt, acceleration.data());
 }
 
 } // namespace haptics

@@ -10,6 +10,8 @@
 
 #include <cmath>
 
+#include "dynamics/short_chain.hpp"
+
 namespace haptics {
 namespace {
 
@@ -133,6 +135,7 @@ void describe_chain(LinkageModel& model) {
             body.inertia + body.mass * body.center.squaredNorm() + mass_beyond * link.squaredNorm();
         mass_beyond += body.mass;
     }
+    describe_short_chain(model);
 }
 
 DynamicsKernel choose_kernel(const LinkageModel& model) {

@@ -2,7 +2,7 @@
 ///
 /// Planar angles add up: angle_s = angle_p + offset_s (+ q for a joint that turns), and so do the rates. In a
 /// chain the sums of four neighbors are taken first and the sum of all before them is added last, so that one
-/// addition a group waits for the group before.
+/// addition a group waits for the group before; the sines follow in a loop of their own, four at a time.
 
 #include <haptics/core/dynamics/kinematics.hpp>
 #include <haptics/core/dynamics/multiversion.hpp>
@@ -30,50 +30,52 @@ HAPTICS_ALWAYS_INLINE void store_sincos(double a0, double a1, double a2, double 
     }
 }
 
-/// Writes angles, rates, sines and cosines of the four bodies from `slot` on; returns through the sums.
-HAPTICS_ALWAYS_INLINE void chain_group(LinkageData& data, int slot, const double* turn, const double* spin,
-                                       double& angle, double& rate) {
-    const double turn01 = turn[0] + turn[1];
-    const double spin01 = spin[0] + spin[1];
-    const double turn012 = turn01 + turn[2];
-    const double spin012 = spin01 + spin[2];
-    const double a0 = angle + turn[0];
-    const double a1 = angle + turn01;
-    const double a2 = angle + turn012;
-    const double a3 = angle + (turn012 + turn[3]);
-    store_sincos(a0, a1, a2, a3, data.sine.data() + slot, data.cosine.data() + slot);
-    data.angle[slot] = a0;
-    data.angle[slot + 1] = a1;
-    data.angle[slot + 2] = a2;
-    data.angle[slot + 3] = a3;
-    data.rate[slot] = rate + spin[0];
-    data.rate[slot + 1] = rate + spin01;
-    data.rate[slot + 2] = rate + spin012;
-    rate += spin012 + spin[3];
-    data.rate[slot + 3] = rate;
-    angle = a3;
+/// Sums from the ground on: sum[i + 1] = part[0] + ... + part[i].
+HAPTICS_ALWAYS_INLINE void add_up(int count, const double* part, double* sum) {
+    double total = 0.0;
+    int i = 0;
+    for (; i + 4 <= count; i += 4) {
+        const double two = part[i] + part[i + 1];
+        const double three = two + part[i + 2];
+        sum[i + 1] = total + part[i];
+        sum[i + 2] = total + two;
+        sum[i + 3] = total + three;
+        total += three + part[i + 3];
+        sum[i + 4] = total;
+    }
+    for (; i < count; ++i) {
+        total += part[i];
+        sum[i + 1] = total;
+    }
 }
 
 HAPTICS_ALWAYS_INLINE void rotate_chain(const LinkageModel& model, LinkageData& data) {
     const int count = model.body_count;
     const double* q = data.position.data() + (model.floating ? 2 : 0);
-    const double* v = data.velocity.data() + (model.floating ? 2 : 0);
-    const double* offset = model.turn_offset.data() + 1;
-    double angle = 0.0;
-    double rate = 0.0;
-    int i = 0;
-    for (; i + 4 <= count; i += 4) {
-        const double turn[4] = {offset[i] + q[i], offset[i + 1] + q[i + 1], offset[i + 2] + q[i + 2],
-                                offset[i + 3] + q[i + 3]};
-        chain_group(data, i + 1, turn, v + i, angle, rate);
+    double turn[k_body_slots];
+    for (int i = 0; i < count; ++i) {
+        turn[i] = model.turn_offset[i + 1] + q[i];
     }
-    const int left = count - i;
-    if (left > 0) {
-        // the arrays are padded: the last group reaches beyond the last body
-        const double turn[4] = {offset[i] + q[i], left > 1 ? offset[i + 1] + q[i + 1] : 0.0,
-                                left > 2 ? offset[i + 2] + q[i + 2] : 0.0, 0.0};
-        const double spin[4] = {v[i], left > 1 ? v[i + 1] : 0.0, left > 2 ? v[i + 2] : 0.0, 0.0};
-        chain_group(data, i + 1, turn, spin, angle, rate);
+    add_up(count, turn, data.angle.data());
+    add_up(count, data.velocity.data() + (model.floating ? 2 : 0), data.rate.data());
+    // the arrays are padded: the last group may reach beyond the last body
+    bool in_range = true;
+    for (int slot = 1; slot <= count; slot += 4) {
+        Lanes x;
+        std::memcpy(&x, data.angle.data() + slot, sizeof(x));
+        Lanes s;
+        Lanes c;
+        detail::sincos_in_range<Lanes, LaneBits>(x, s, c);
+        std::memcpy(data.sine.data() + slot, &s, sizeof(s));
+        std::memcpy(data.cosine.data() + slot, &c, sizeof(c));
+    }
+    for (int slot = 1; slot <= count; ++slot) {
+        in_range &= std::fabs(data.angle[slot]) < k_sincos_range;
+    }
+    if (!in_range) [[unlikely]] {
+        for (int slot = 1; slot <= count; ++slot) {
+            fast_sincos(data.angle[slot], data.sine[slot], data.cosine[slot]);
+        }
     }
 }
 

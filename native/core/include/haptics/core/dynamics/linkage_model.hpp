@@ -75,6 +75,10 @@ struct ChainModel {
     BodyNumbers moment_x{}, moment_y{};
     /// Diagonal of the mass matrix in absolute angles, kg m^2.
     BodyNumbers diagonal{};
+    /// For the pairs 0-1, 1-2, 0-2 of the first three bodies: l_i . mu_j and mu_j x l_i with all joints at 0,
+    /// kg m^2. See short_chain.cpp.
+    double pair_along[3]{};
+    double pair_across[3]{};
 };
 
 /// Most steps of a lane of the split chain, the start included.
