@@ -54,6 +54,7 @@ if(HAPTICS_TESTS)
 endif()
 if(HAPTICS_BENCH)
     haptics_package(benchmark benchmark benchmark::benchmark)
+    include(peers)
 endif()
 
 # only its header: the library is opened at run time. Not asked for until a room includes it.
