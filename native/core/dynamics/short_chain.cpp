@@ -138,7 +138,7 @@ HAPTICS_ALWAYS_INLINE void three_pairs(const ChainModel& chain, const double* q,
     double b02 = chain.pair_across[2];
     Pair s;
     Pair c;
-    if (in_range(q[1]) & in_range(q[2])) [[likely]] {
+    if (in_range(q[1]) && in_range(q[2])) [[likely]] {
         Pair r;
         PairBits k;
         detail::reduce_angle<Pair, PairBits>(x, r, k);

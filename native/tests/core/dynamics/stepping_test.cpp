@@ -126,5 +126,5 @@ TEST_CASE("a thousand steps of every kernel give the same bits in every build an
         result = hash(hash(result, linkage.data.position), linkage.data.velocity);
     }
     MESSAGE("hash " << result);
-    CHECK(result == 7631554193139933528ULL);
+    CHECK(result == 14609164133562050212ULL);
 }

