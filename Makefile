@@ -1,7 +1,7 @@
 # Thin: every command is a script in tools/ or a CMake preset.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help demo test editor run build bench experiment1 lint format clean
+.PHONY: help demo test editor run build bench experiment1 latency lint format clean
 
 PRESET ?= release
 OUT ?= build/run
@@ -32,6 +32,9 @@ experiment1: ## experiment 1 of the paper: CSV, picture and table in build/exper
 
 bench: ## the benchmarks (ARGS="--benchmark_filter=…"); JSON in build/bench.json
 	@tools/run/bench $(ARGS)
+
+latency: ## how late the loop inside Godot is woken, beside cyclictest (SECONDS=20)
+	@tools/run/latency $(if $(filter command\ line,$(origin SECONDS)),$(SECONDS),20)
 
 lint: ## room rules, formatting, clang-tidy, gdlint
 	@tools/run/test --only lint

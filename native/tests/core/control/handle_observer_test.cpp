@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 using namespace haptics;
@@ -130,7 +131,8 @@ TEST_SUITE("handle observer") {
         HandleObserver observer(truth.step, 0.0, Vec3::Constant(300.0));
         for (int i = 0; i < 400; ++i) {
             if (i < 380)
-                observer.correct(i % 3 == 1 ? Pose(Pose::Constant(NAN)) : truth.pose);
+                observer.correct(i % 3 == 1 ? Pose(Pose::Constant(std::numeric_limits<double>::quiet_NaN()))
+                                            : truth.pose);
             truth.advance(wave(i), Wrench::Zero());
             observer.sent(wave(i), truth.mass);
         }
