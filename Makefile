@@ -1,7 +1,7 @@
 # Thin: every command is a script in tools/ or a CMake preset.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help demo test editor run build bench experiment1 latency lint format clean
+.PHONY: help demo test editor run build bench experiment1 latency sanitizers lint format clean
 
 PRESET ?= release
 OUT ?= build/run
@@ -35,6 +35,9 @@ bench: ## the benchmarks (ARGS="--benchmark_filter=…"); JSON in build/bench.js
 
 latency: ## how late the loop inside Godot is woken, beside cyclictest (SECONDS=20)
 	@tools/run/latency $(if $(filter command\ line,$(origin SECONDS)),$(SECONDS),20)
+
+sanitizers: ## the loop, its exchange and the session under address, undefined-behavior and thread checks
+	@tools/run/test --only sanitizers
 
 lint: ## room rules, formatting, clang-tidy, gdlint
 	@tools/run/test --only lint
