@@ -14,6 +14,7 @@
 #include <fstream>
 #include <iomanip>
 #include <numbers>
+#include <string>
 
 using namespace haptics;
 using shared::ObservedTool;
@@ -213,6 +214,32 @@ TEST_SUITE("observed tool") {
         }
         if (const char* path = std::getenv("HAPTICS_STIFFNESS_TABLE"))
             write_table(path);
+    }
+
+    TEST_CASE("a free tool as heavy as the device weighs less than both together, and moves without clicks") {
+        for (const Coupling coupling : {Coupling::virtual_coupling, Coupling::four_channel}) {
+            ObservedToolOptions o;
+            o.coupling = coupling;
+            o.distance = 0.03;
+            o.hand = pushing_hand(Wrench(0.3, 0.0, 0.0), 0.2);
+            ObservedTool tool(o);
+            double click = 0.0;
+            double last = 0.0;
+            double early = 0.0;
+            for (int i = 0; i < 350; ++i) {
+                tool.session->step();
+                click = std::max(click, std::abs(tool.session->report().force.x() - last));
+                last = tool.session->report().force.x();
+                if (i == 249)
+                    early = tool.device->true_twist().x();
+            }
+            const double felt = 0.3 * 0.1 / (tool.device->true_twist().x() - early);
+            MESSAGE(std::string(coupling == Coupling::four_channel ? "four channels" : "virtual coupling")
+                    << ": felt mass " << felt << " kg, largest step of the force " << click << " N");
+            CHECK(felt < 0.62);
+            CHECK(felt > 0.3);
+            CHECK(click < 0.1);
+        }
     }
 
     TEST_CASE("an unstable design is told apart from a stable one") {
