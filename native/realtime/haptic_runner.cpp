@@ -80,7 +80,8 @@ int HapticRunner::advance(double seconds) {
 
 LoopStatistics HapticRunner::statistics() const noexcept {
     LoopStatistics s = thread_.statistics();
-    if (s.steps == 0) {
+    // in lock-step; a thread that is about to make its first step owns the session
+    if (s.steps == 0 && !thread_.running()) {
         s.steps = session_->report().step;
         s.step_time = lockstep_step_time_.snapshot();
     }
