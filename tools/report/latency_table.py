@@ -35,22 +35,23 @@ def read_cyclictest(text: str) -> dict[int, int]:
 
 def main() -> int:
     folder, target = Path(sys.argv[1]), Path(sys.argv[2])
-    histogram: dict[int, int] = {}
+    histograms = []
     ours = []
     for turn in sorted(folder.glob("*.cyclictest")):
-        for latency, count in read_cyclictest(turn.read_text()).items():
-            histogram[latency] = histogram.get(latency, 0) + count
+        histograms.append(read_cyclictest(turn.read_text()))
         ours.append(json.loads((folder / turn.stem / "run.json").read_text()))
-    if not histogram:
+    if not histograms or not all(histograms):
         print("cyclictest counted nothing", file=sys.stderr)
         return 1
     names = {"p50": 0.5, "p99": 0.99, "p999": 0.999}
-    # percentiles of turns cannot be added up: the median turn stands for all, the maximum is that of all
+    # percentiles of turns cannot be added up: for both the median turn stands for all, the maximum is that of all
     middle = len(ours) // 2
     loop = {name: sorted(run["wake_latency_us"][name] for run in ours)[middle] for name in names}
-    yardstick = {name: float(percentile(histogram, share)) for name, share in names.items()}
+    yardstick = {
+        name: float(sorted(percentile(histogram, share) for histogram in histograms)[middle]) for name, share in names.items()
+    }
     loop["max"] = max(run["wake_latency_us"]["max"] for run in ours)
-    yardstick["max"] = float(max(histogram))
+    yardstick["max"] = float(max(max(histogram) for histogram in histograms))
     stolen = max((run.get("host_steal") or 0.0) for run in ours)
     result = {
         "loop_us": loop,

@@ -33,28 +33,28 @@
 namespace haptics {
 namespace {
 
-// handle, proxy, observer, forces on their way
-constexpr int k_forces = 8;
-constexpr int k_most = 7 + k_forces;
+// handle, proxy, observer; then the forces on their way
+constexpr int k_states = 7;
+// more forces on their way make the search slow
+constexpr int k_most_searched = 8;
 constexpr double k_margin = 1.2;
 // a loop against a wall that forgets slower than this is left out, rad/s
 constexpr double k_slowest = 5.0;
 
 // sized by the delay
-using State = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, k_most, 1>;
-using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, k_most, k_most>;
+using State = Eigen::VectorXd;
+using Square = Eigen::MatrixXd;
 
 struct Loop {
     double mass; // assumed
     double step;
-    int delay;      // whole steps, at most k_forces
+    int delay;      // whole steps
     int size;       // of the state: those above and the forces on their way
     double g, h, k; // observer's gains
     SolverGains gains;
     double share; // a
     // truth
     LoopCase truth;
-    bool four_channel;
     // handle over one step with a held force: exact for mass, spring and damper
     Mat2 motion;
     Vec2 push;
@@ -76,19 +76,22 @@ void solve_handle(Loop& loop) {
     loop.push = e.topRightCorner<2, 1>();
 }
 
+int steps_of(const LoopFigures& figures) {
+    return std::max(0, static_cast<int>(std::ceil(figures.delay / figures.step - 1e-6)));
+}
+
 Loop make_loop(const LoopFigures& figures, const CouplingDesign& design, const LoopCase& truth) {
     Loop loop{};
     loop.mass = figures.mass;
     loop.step = figures.step;
-    loop.delay = std::clamp(static_cast<int>(std::ceil(figures.delay / figures.step - 1e-6)), 0, k_forces);
-    loop.size = 7 + loop.delay;
+    loop.delay = steps_of(figures);
+    loop.size = k_states + loop.delay;
     const double p = std::exp(-design.bandwidth * figures.step);
     loop.g = 1.0 - p * p * p;
     loop.h = 1.5 * (1.0 - p) * (1.0 - p) * (1.0 + p) / figures.step;
     loop.k = (1.0 - p) * (1.0 - p) * (1.0 - p) / (figures.step * figures.step);
     loop.gains = solver_gains(design.stiffness, design.damping, 1.0 / figures.mass, figures.step);
     loop.truth = truth;
-    loop.four_channel = figures.four_channel;
     loop.share = figures.four_channel ? figures.mass / (figures.mass + truth.proxy_mass) : 0.0;
     solve_handle(loop);
     return loop;
@@ -200,11 +203,9 @@ double noise_of(const Loop& loop, double quantum) {
 
 double stiffness_at(const Loop& loop, double frequency) {
     using Complex = std::complex<double>;
-    Eigen::Matrix<Complex, Eigen::Dynamic, Eigen::Dynamic, 0, k_most, k_most> a =
-        -matrix_of(loop).cast<Complex>();
+    Eigen::MatrixXcd a = -matrix_of(loop).cast<Complex>();
     a.diagonal().array() += std::polar(1.0, 2.0 * std::numbers::pi * frequency * loop.step);
-    const Eigen::Matrix<Complex, Eigen::Dynamic, 1, 0, k_most, 1> b =
-        pass(loop, State::Zero(loop.size), 0.0, 1.0).state.cast<Complex>();
+    const Eigen::VectorXcd b = pass(loop, State::Zero(loop.size), 0.0, 1.0).state.cast<Complex>();
     const Complex x = a.partialPivLu().solve(b)(0);
     return 1.0 / std::abs(x);
 }
@@ -231,8 +232,6 @@ bool holds(const LoopFigures& figures, const CouplingDesign& design) {
                     // without a hand nothing brings the pair back: its rest is an eigenvalue of 1
                     if (hold > 0.0 && radius_of(make_loop(figures, design, truth)) > 1.0 - 1e-9)
                         return false;
-                    if (!figures.four_channel && ratio > 1.0)
-                        break;
                 }
             }
         }
@@ -251,7 +250,11 @@ double spectral_radius(const LoopFigures& figures, const CouplingDesign& design,
     return radius_of(make_loop(figures, design, loop));
 }
 
-CouplingDesign design_coupling(const LoopFigures& figures) {
+CouplingDesign design_coupling(const LoopFigures& wanted) {
+    // A long delay is searched with longer steps, and so with fewer forces on their way: a slower loop of the
+    // same delay is later still, so what holds in it holds in the faster one.
+    LoopFigures figures = wanted;
+    figures.step = std::max(wanted.step, wanted.delay / k_most_searched);
     LoopCase nominal;
     nominal.true_mass = figures.mass;
     nominal.proxy_mass = figures.mass;

@@ -263,6 +263,9 @@ void Session::follow_handle() {
         handle_velocity_ = map.twist_to_scene(
             reading_.has_velocity ? reading_.velocity : velocity_.update(reading_.pose, interval));
     }
+    // a device that fell silent stands still: the last push of the hand must not carry the tool on and on
+    if (observer_ && silent_for_ > settings_.device_patience)
+        observer_->reset();
     if (observer_ && observer_->started()) {
         handle_ = map.to_scene(observer_->pose());
         handle_velocity_ = map.twist_to_scene(observer_->twist());
@@ -310,7 +313,7 @@ void Session::run_model() {
     hand.target_velocity = handle_velocity_;
     hand.stiffness = gains_.stiffness;
     hand.damping = gains_.damping;
-    if (observer_) {
+    if (observer_ && observer_->started()) {
         // the handle yields to the force while it acts (coupling_design.cpp)
         const Mat3 yielding = device_mass_.inverse();
         hand.target = settings_.mapping.to_scene(observer_->pose_ahead()) + grab_offset_;
@@ -368,7 +371,8 @@ void Session::step() {
         force_sum_.setZero();
         force_count_ = 0.0;
     }
-    device_mass_ = settings_.mapping.mass_to_scene(device_.handle_mass(reading_.pose));
+    const Mat3 handle_mass = device_.handle_mass(reading_.pose);
+    device_mass_ = settings_.mapping.mass_to_scene(handle_mass);
     grasp();
     run_model();
     const Wrench force = command();
@@ -378,8 +382,7 @@ void Session::step() {
         wanted = settings_.mapping.wrench_to_device(force) + care_.wrench();
     const Twist device_twist = settings_.mapping.twist_to_device(handle_velocity_);
     if (settings_.passivity_control && gate_.armed())
-        wanted += passivity_.damp(ledger_.created(), wanted, device_twist, device_.handle_mass(reading_.pose),
-                                  settings_.step);
+        wanted += passivity_.damp(ledger_.created(), wanted, device_twist, handle_mass, settings_.step);
     const Fault device = device_faults();
     gate_.raise(device);
     try_to_arm(device);
@@ -388,7 +391,7 @@ void Session::step() {
     care_.sent(wanted, gated.applied);
     device_.write(gated.applied);
     if (observer_)
-        observer_->sent(gated.applied, device_.handle_mass(reading_.pose));
+        observer_->sent(gated.applied, handle_mass);
     // the handle felt all forces since its last sample; the compensation keeps its own books
     force_sum_ += gated.applied - care_.applied();
     force_count_ += 1.0;

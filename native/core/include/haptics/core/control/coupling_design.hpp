@@ -10,7 +10,7 @@ struct LoopFigures {
     /// Period, s, and time from the motion that a reading shows to the start of the force that answers it, s.
     double step{0.001};
     double delay{0.0};
-    /// Step of the reading, > 0 (one that is exact: 0).
+    /// Step of the reading; 0 for one that is exact.
     double quantum{1e-5};
     /// Largest force noise that the quantum may cause (standard deviation).
     double noise{0.05};
@@ -38,23 +38,24 @@ struct CouplingDesign {
 };
 
 /// The stiffest choice at 5 and 30 Hz that stays stable, with a margin, for every proxy, hand and error of
-/// the mass named in `figures`; where the quantum makes more noise than allowed whatever is chosen, the
-/// stiffest with the least power-of-two multiple of it. Takes some 50 ms: not for the haptic loop.
-CouplingDesign design_coupling(const LoopFigures& figures);
+/// the mass named in `wanted`; where the quantum makes more noise than allowed whatever is chosen, the
+/// stiffest with the least power-of-two multiple of it. Takes some 20 ms and allocates: not for the haptic
+/// loop.
+CouplingDesign design_coupling(const LoopFigures& wanted);
 
-/// Spectral radius of the loop with another mass than assumed and a given hand and proxy (`proxy_mass` in
-/// kg; 0 is a hard wall with a proxy of `wall_proxy` kg before it). For tests and reports.
+/// What the loop really meets: the handle's mass, the hand, and a proxy pressed against a hard wall or free.
 struct LoopCase {
-    double true_mass{0.3};
-    double hand_stiffness{0.0};
-    double hand_damping{0.0};
-    double proxy_mass{0.3};
+    double true_mass{0.3};      ///< kg
+    double hand_stiffness{0.0}; ///< N/m
+    double hand_damping{0.0};   ///< N s/m
+    double proxy_mass{0.3};     ///< kg
     bool wall{true};
 };
+/// Spectral radius of one step of that loop; stable below 1. For tests and reports. Allocates.
 double spectral_radius(const LoopFigures& figures, const CouplingDesign& design, const LoopCase& loop);
 
-/// What the solver of the proxy has to use so that the coupling ends the step with `gain`: the handle yields
-/// to the force while it acts. `mobility` is the handle's 1/m on that axis.
+/// What the solver of the proxy has to use so that the coupling has these gains at the end of the step,
+/// although the handle yields to the force while it acts. `mobility` is the handle's 1/m on that axis.
 struct SolverGains {
     double stiffness{0.0};
     double damping{0.0};
