@@ -242,6 +242,46 @@ TEST_SUITE("observed tool") {
         }
     }
 
+    TEST_CASE("a long delay is designed for as it is, at every rate") {
+        for (const double rate : {1000.0, 4000.0, 10000.0})
+            for (const bool four_channel : {false, true})
+                for (const double delay : {0.002, 0.005}) {
+                    LoopFigures figures;
+                    figures.step = 1.0 / rate;
+                    figures.delay = delay;
+                    figures.four_channel = four_channel;
+                    const CouplingDesign design = design_coupling(figures);
+                    CAPTURE(rate);
+                    CAPTURE(four_channel);
+                    CAPTURE(delay);
+                    CHECK(design.stiffness > 0.0);
+                    for (const double error : {-0.25, 0.0, 0.25}) {
+                        LoopCase truth;
+                        truth.true_mass = figures.mass / (1.0 + error);
+                        CHECK(spectral_radius(figures, design, truth) < 1.0);
+                        truth.hand_stiffness = 2000.0;
+                        truth.hand_damping = 20.0;
+                        CHECK(spectral_radius(figures, design, truth) < 1.0);
+                    }
+                }
+    }
+
+    TEST_CASE("a device that falls silent while pushed does not carry the tool away") {
+        ObservedToolOptions o;
+        o.distance = 0.03;
+        o.hand = pushing_hand(Wrench(1.0, 0.0, 0.0), 0.2);
+        ObservedTool tool(o);
+        for (int i = 0; i < 350; ++i)
+            tool.session->step();
+        const double there = tool.session->report().grip.x();
+        tool.port->silence();
+        for (int i = 0; i < 2000; ++i)
+            tool.session->step();
+        CHECK((tool.session->report().faults & Fault::reconnect_the_device) != Fault::none);
+        CHECK(std::abs(tool.session->report().grip.x() - there) < 0.02);
+        CHECK(std::abs(tool.session->report().device.x() - there) < 0.02);
+    }
+
     TEST_CASE("an unstable design is told apart from a stable one") {
         LoopFigures figures;
         figures.delay = 2e-3;

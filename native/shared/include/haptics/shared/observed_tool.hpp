@@ -10,22 +10,25 @@
 
 namespace haptics::shared {
 
-/// A device with another mass than it says.
+/// A device with another mass than it says, and that can fall silent.
 class MisjudgedDevice final : public DevicePort {
   public:
     MisjudgedDevice(SimulatedPantograph& device, double ratio)
         : device_(device)
         , ratio_(ratio) {}
-    bool read(DeviceReading& reading) override { return device_.read(reading); }
+    bool read(DeviceReading& reading) override { return !silent_ && device_.read(reading); }
     void write(const Wrench& force) override { device_.write(force); }
     void advance(double dt) override { device_.advance(dt); }
     [[nodiscard]] Mat3 handle_mass(const Pose& pose) const override {
         return ratio_ * device_.handle_mass(pose);
     }
     [[nodiscard]] int freedoms() const override { return device_.freedoms(); }
+    /// Gives no sample from now on.
+    void silence() { silent_ = true; }
 
   private:
     SimulatedPantograph& device_;
+    bool silent_{false};
     double ratio_;
 };
 
