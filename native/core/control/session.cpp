@@ -112,13 +112,16 @@ Session::Session(const SessionSettings& settings, const Model& model, const Outp
 void Session::choose_gains() {
     gains_ = settings_.gains;
     const bool chosen = !gains_.stiffness.isZero(0.0) || !gains_.damping.isZero(0.0);
-    const ObserverSettings& wanted = settings_.observer;
-    if (!wanted.enabled) {
-        if (!chosen)
-            gains_ = default_gains(device_mass_, loop_mobility(), settings_.step, settings_.device_delay,
-                                   settings_.velocity_window);
+    if (settings_.observer.enabled && observe(chosen))
         return;
-    }
+    if (!chosen)
+        gains_ = default_gains(device_mass_, loop_mobility(), settings_.step, settings_.device_delay,
+                               settings_.velocity_window);
+}
+
+// false when no coupling holds with what the device is said to be
+bool Session::observe(bool gains_chosen) {
+    const ObserverSettings& wanted = settings_.observer;
     const Mat3 mass = device_.handle_mass(reading_.pose);
     LoopFigures figures;
     figures.step = settings_.step;
@@ -135,7 +138,9 @@ void Session::choose_gains() {
     figures.hand_stiffness = 2.0;
     figures.hand_damping = 0.02;
     const CouplingDesign rotation = design_coupling(figures);
-    if (!chosen) {
+    if (translation.stiffness == 0.0 || rotation.stiffness == 0.0)
+        return false;
+    if (!gains_chosen) {
         const double scale = settings_.mapping.scale * settings_.mapping.scale;
         gains_.stiffness =
             Vec3(translation.stiffness / scale, translation.stiffness / scale, rotation.stiffness);
@@ -145,6 +150,7 @@ void Session::choose_gains() {
     const double around = wanted.rotation_bandwidth > 0.0 ? wanted.rotation_bandwidth : rotation.bandwidth;
     observer_.emplace(settings_.step, wanted.delay, Vec3(along, along, around));
     observer_->sent(Wrench::Zero(), mass);
+    return true;
 }
 
 void Session::hold(bool held) {

@@ -158,6 +158,15 @@ void HapticWorld::start(bool realtime, double record_seconds, Problems& problems
     OutputGate gate(settings_.safety, device_->kinematics());
     auto made = std::make_unique<Session>(session, model, gate, device_->port(),
                                           node_to_center(tool_start_, tool_center_));
+    if (session.observer.enabled && made->observer() == nullptr) {
+        problems.add("The world's observer finds no coupling that holds with a delay of " +
+                     std::to_string(1e3 * session.observer.delay) + " ms and the device's mass wrong by " +
+                     std::to_string(session.observer.mass_error) +
+                     ". Lower observer_mass_error, use a device with less delay, or switch observer off.");
+        made.reset();
+        device_.reset();
+        return;
+    }
     gains_ = made->gains();
     report_ = made->report();
     runner_ = std::make_unique<HapticRunner>(std::move(made), device_->hook());

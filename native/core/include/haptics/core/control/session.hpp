@@ -115,7 +115,8 @@ class Session {
     [[nodiscard]] const CouplingGains& gains() const { return gains_; }
     [[nodiscard]] const EnergyLedger& ledger() const { return ledger_; }
     [[nodiscard]] const PassivityController& passivity() const { return passivity_; }
-    /// Null while none is enabled.
+    /// Null while none is enabled, and when no coupling holds with the device's figures: the loop then does
+    /// without.
     [[nodiscard]] const HandleObserver* observer() const { return observer_ ? &*observer_ : nullptr; }
     /// Handle pose at which the grip would be at `grip` (device frame): where a pointing hand has to go.
     [[nodiscard]] Pose handle_for(const Pose& grip) const {
@@ -127,6 +128,7 @@ class Session {
 
   private:
     void choose_gains();
+    [[nodiscard]] bool observe(bool gains_chosen);
     [[nodiscard]] bool feeds_forward() const;
     [[nodiscard]] Mat3 loop_mobility() const;
     [[nodiscard]] double stored_energy() const;
