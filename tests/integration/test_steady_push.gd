@@ -37,6 +37,17 @@ func test_an_edge_on_one_wall() -> void:
 	assert_almost_eq(_world.get_force(), Vector2(0, -FORCE), Vector2(0.02, 0.02))
 
 
+func test_an_edge_with_an_observed_hand_and_passivity_control() -> void:
+	_world = Scene.make_world(Vector2(0, FORCE))
+	_world.observer = true
+	_world.passivity_control = true
+	add_child_autofree(
+		Scene.gather([_world, Scene.make_tool(), Scene.make_wall(Vector2(0, 70), Vector2(480, 40))])
+	)
+	await wait_physics_frames(210)
+	_assert_steady()
+
+
 func test_an_edge_on_a_wall_of_four_pieces() -> void:
 	var walls: Array[Node] = []
 	for i: int in 4:
