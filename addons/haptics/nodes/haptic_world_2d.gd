@@ -145,7 +145,7 @@ var coupling_rotation_damping: float = 0.0
 ## Longest window of the velocity estimate, samples: longer is quieter and lags more.
 @export_range(1, 63) var velocity_window: int = 2
 ## Estimates the handle's motion and the force of the hand with a model of the device, and chooses
-## the coupling that goes with it: many times stiffer walls, and four channels without a force
+## the coupling that goes with it: stiffer walls, and four channels without a force
 ## sensor. Needs a device whose mass is known to within [member observer_mass_error].
 @export var observer: bool = false
 ## Force noise that coarse encoders may cause (standard deviation); more allows a stiffer coupling.

@@ -153,8 +153,16 @@ void HapticWorld::start(bool realtime, double record_seconds, Problems& problems
     session.reading_error = device_->reading_error();
     session.care = device_options_->care;
     session.care.compensation.delay = device_->latency(session.step);
-    session.observer.delay =
-        std::min(device_->latency(session.step), HandleObserver::k_most_delay * session.step);
+    session.observer.delay = device_->latency(session.step);
+    const double longest = HandleObserver::k_most_delay * session.step;
+    if (session.observer.enabled && session.observer.delay > longest) {
+        problems.add("The world's observer looks ahead by at most " + std::to_string(1e3 * longest) +
+                     " ms at this rate, and the device is late by " +
+                     std::to_string(1e3 * session.observer.delay) +
+                     " ms. Lower the rate, use a device with less delay, or switch observer off.");
+        device_.reset();
+        return;
+    }
     OutputGate gate(settings_.safety, device_->kinematics());
     auto made = std::make_unique<Session>(session, model, gate, device_->port(),
                                           node_to_center(tool_start_, tool_center_));
