@@ -11,6 +11,7 @@ import argparse
 import hashlib
 import json
 import os
+import re
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -34,8 +35,21 @@ def headers_by_object(build: Path) -> dict[str, list[str]]:
     return found
 
 
-def prepare(build: Path, out: Path) -> list[tuple[Path, str]]:
-    """Writes the compile commands without gcc's own flags; returns each source with the mark of all that it depends on."""
+def ships(source: Path) -> bool:
+    """Tests and benchmarks are held by the warnings of two compilers, and would double the time."""
+    native = ROOT / "native"
+    return source.is_relative_to(native) and not any(source.is_relative_to(native / part) for part in ("tests", "bench"))
+
+
+def sources_of(file: Path) -> list[Path]:
+    """The sources in a compiled file: itself, or what the build joined in it."""
+    if "Unity" not in file.parts:
+        return [file]
+    return [Path(name) for name in re.findall(r'^#include "(.+\.cpp)"$', file.read_text(), re.MULTILINE)]
+
+
+def prepare(build: Path, out: Path, only: set[Path]) -> list[tuple[Path, str]]:
+    """Writes the compile commands without gcc's own flags; returns each compiled file with the mark of all that it depends on."""
     entries = json.loads((build / "compile_commands.json").read_text())
     headers = headers_by_object(build)
     rules = (ROOT / ".clang-tidy").read_bytes() + (ROOT / "tools/setup/versions.env").read_bytes()
@@ -44,10 +58,8 @@ def prepare(build: Path, out: Path) -> list[tuple[Path, str]]:
     texts: dict[str, bytes] = {}
     for entry in entries:
         source = Path(entry["file"])
-        if not source.is_relative_to(ROOT / "native"):
-            continue
-        # what ships; tests and benchmarks are held by the warnings of two compilers, and would double the time
-        if source.is_relative_to(ROOT / "native/tests") or source.is_relative_to(ROOT / "native/bench"):
+        inside = sources_of(source)
+        if not all(ships(file) for file in inside) or (only and not only.intersection(inside)):
             continue
         words = [word for word in entry["command"].split() if word not in GCC_ONLY]
         # gcc's precompiled headers; without them a missing include shows here
@@ -75,14 +87,12 @@ def main() -> int:
     parser.add_argument("files", nargs="*", type=Path, help="only these sources")
     options = parser.parse_args()
     out = ROOT / "build/tidy"
-    sources = prepare(options.build, out)
-    only = {file.resolve() for file in options.files}
-    sources = [pair for pair in sources if not only or pair[0] in only]
+    sources = prepare(options.build, out, {file.resolve() for file in options.files})
     passed_with = out / "passed.json"
     passed: dict[str, str] = json.loads(passed_with.read_text()) if passed_with.exists() else {}
     todo = [(source, mark) for source, mark in sources if passed.get(str(source)) != mark]
     # long ones first, so that the last one does not keep a core waiting
-    todo.sort(key=lambda pair: -pair[0].stat().st_size)
+    todo.sort(key=lambda pair: -sum(file.stat().st_size for file in sources_of(pair[0])))
     tool = subprocess.run([str(ROOT / "tools/setup/run_tool"), "--path", "clang-tidy"], capture_output=True, text=True, check=True)
 
     def tidy(pair: tuple[Path, str]) -> bool:

@@ -20,8 +20,8 @@ namespace haptics::contact {
 namespace {
 
 /// Planes that differ by less are one, m and sine.
-constexpr double k_same_plane = 1e-5;
-constexpr double k_same_plane_turn = 2e-3;
+constexpr double k_merge_plane = 1e-5;
+constexpr double k_merge_turn = 2e-3;
 /// Directions of push that may merge, cosine of 0.1 rad.
 constexpr double k_same_push = 0.995;
 /// A point that is deeper than both ends by more than this is the patch on its own, m.
@@ -29,7 +29,7 @@ constexpr double k_proud = 1e-6;
 /// Points nearer than this are one, m.
 constexpr double k_one_point = 1e-8;
 /// Gaps that differ by less are equal, m.
-constexpr double k_tie = 1e-12;
+constexpr double k_merge_tie = 1e-12;
 
 bool one_patch(const Draft& p, const Draft& q) {
     const PatchSide& s = p.patch.side;
@@ -40,14 +40,14 @@ bool one_patch(const Draft& p, const Draft& q) {
     if (p.patch.normal.dot(q.patch.normal) < k_same_push || !(p.surface_b == q.surface_b))
         return false;
     const double turn = cross(p.plane_normal, q.plane_normal);
-    return std::abs(turn) < k_same_plane_turn && p.plane_normal.dot(q.plane_normal) > 0.0 &&
+    return std::abs(turn) < k_merge_turn && p.plane_normal.dot(q.plane_normal) > 0.0 &&
            std::abs(p.plane_normal.dot(q.patch.point[0].position) - p.plane_offset -
-                    (q.plane_normal.dot(q.patch.point[0].position) - q.plane_offset)) < k_same_plane;
+                    (q.plane_normal.dot(q.patch.point[0].position) - q.plane_offset)) < k_merge_plane;
 }
 
 bool leads(const Draft& p, const Draft& q) {
     const double difference = smallest_gap(p.patch) - smallest_gap(q.patch);
-    if (std::abs(difference) > k_tie)
+    if (std::abs(difference) > k_merge_tie)
         return difference < 0.0;
     if (p.patch.feature_b != q.patch.feature_b)
         return p.patch.feature_b < q.patch.feature_b;

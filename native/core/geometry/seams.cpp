@@ -11,12 +11,13 @@
 #include <haptics/core/geometry/shapes.hpp>
 
 #include <algorithm>
+#include <numbers>
 #include <vector>
 
 namespace haptics {
 namespace {
 
-constexpr double k_pi = 3.14159265358979323846;
+constexpr double k_pi = std::numbers::pi;
 /// Sectors that leave a smaller gap touch, and corners blunter than pi by less are flat, rad.
 constexpr double k_angle = 1e-3;
 

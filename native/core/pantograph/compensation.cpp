@@ -49,7 +49,6 @@ namespace haptics {
 
 namespace {
 
-constexpr double k_pi = std::numbers::pi;
 // the energy at hand is spent no faster than in that time (s)
 constexpr double k_horizon = 0.02;
 
@@ -140,7 +139,8 @@ void Compensation::estimate_rates(const JointVector& angles, const JointVector& 
     Reading now{angles, dt};
     if (past_count_ > 0)
         for (int i = 0; i < k_max_motors; ++i)
-            now.angles[i] = past(0).angles[i] + std::remainder(angles[i] - past(0).angles[i], 2.0 * k_pi);
+            now.angles[i] =
+                past(0).angles[i] + std::remainder(angles[i] - past(0).angles[i], 2.0 * std::numbers::pi);
     newest_ = (newest_ + 1) % k_window;
     past_[static_cast<std::size_t>(newest_)] = now;
     past_count_ = std::min(past_count_ + 1, k_window);
@@ -162,7 +162,7 @@ void Compensation::estimate_rates(const JointVector& angles, const JointVector& 
 void Compensation::estimate_acceleration(const Pose& pose, double dt) {
     // (1 - lag)^2 of the position is w^2-scaled acceleration behind a double pole; a third pole smooths its
     // steps
-    const double corner = 2.0 * k_pi * settings_.acceleration_bandwidth;
+    const double corner = 2.0 * std::numbers::pi * settings_.acceleration_bandwidth;
     const double pole = 1.0 - std::exp(-corner * dt);
     slow_ += pole * (pose - slow_);
     slower_ += pole * (slow_ - slower_);
@@ -232,7 +232,7 @@ Wrench Compensation::update(const Pose& pose, const JointVector* angles, double 
     if (angles != nullptr) {
         now.head(kinematics_.motors()) = angles->head(kinematics_.motors());
         error.head(kinematics_.motors())
-            .setConstant(k_pi / kinematics_.geometry().motor.counts_per_revolution);
+            .setConstant(std::numbers::pi / kinematics_.geometry().motor.counts_per_revolution);
     } else {
         kinematics_.inverse(pose, now);
         error = state.rates.cwiseAbs() * reading_error_;

@@ -9,7 +9,6 @@ namespace haptics {
 
 namespace {
 
-constexpr double k_pi = std::numbers::pi;
 constexpr const char* k_side = "Set it to +1 or -1.";
 constexpr const char* k_metres = "Give lengths in meters.";
 constexpr const char* k_kilograms = "Give masses in kilograms and inertias in kg m^2.";
@@ -18,7 +17,8 @@ std::vector<FigureError> validate_bar(const FiveBarGeometry& bar, const std::str
     FigureCheck check(prefix);
     check.range("base_center.x", bar.base_center.x(), -1.0, 1.0, "m", k_metres);
     check.range("base_center.y", bar.base_center.y(), -1.0, 1.0, "m", k_metres);
-    check.range("base_angle", bar.base_angle, -2.0 * k_pi, 2.0 * k_pi, "rad", "Give angles in radians.");
+    check.range("base_angle", bar.base_angle, -2.0 * std::numbers::pi, 2.0 * std::numbers::pi, "rad",
+                "Give angles in radians.");
     check.range("base_spacing", bar.base_spacing, 0.0, 1.0, "m", k_metres);
     for (std::size_t k = 0; k < 2; ++k) {
         const std::string at = "[" + std::to_string(k) + "]";
@@ -97,15 +97,16 @@ std::vector<FigureError> validate(const PantographGeometry& geometry) {
         const std::string at = "[" + std::to_string(i) + "]";
         check.range(("gear_ratio" + at).c_str(), geometry.gear_ratio[i], 0.1, 500.0, "",
                     "Give motor turns per joint turn; 1 without a gear.");
-        check.range(("encoder_offset" + at).c_str(), geometry.encoder_offset[i], -4.0 * k_pi, 4.0 * k_pi,
-                    "rad", "Give angles in radians.");
+        check.range(("encoder_offset" + at).c_str(), geometry.encoder_offset[i], -4.0 * std::numbers::pi,
+                    4.0 * std::numbers::pi, "rad", "Give angles in radians.");
         if (geometry.encoder_direction[i] != 1 && geometry.encoder_direction[i] != -1)
             check.inconsistent(("encoder_direction" + at).c_str(), geometry.encoder_direction[i], -1.0, 1.0,
                                "", k_side);
     }
     check.range("handle_mass", geometry.handle_mass, 0.001, 10.0, "kg", k_kilograms);
     check.range("handle_inertia", geometry.handle_inertia, 1.0e-8, 1.0, "kg m^2", k_kilograms);
-    check.range("rotation_limit", geometry.rotation_limit, 0.01, k_pi, "rad", "Give angles in radians.");
+    check.range("rotation_limit", geometry.rotation_limit, 0.01, std::numbers::pi, "rad",
+                "Give angles in radians.");
     for (int axis = 0; axis < 3; ++axis)
         check.range(axis == 0   ? "home.x"
                     : axis == 1 ? "home.y"

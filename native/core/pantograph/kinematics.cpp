@@ -31,7 +31,6 @@ namespace haptics {
 
 namespace {
 
-constexpr double k_pi = std::numbers::pi;
 // least |e x d| that is divided by: keeps rates finite at full stretch (m^2)
 constexpr double k_least_moment = 1.0e-9;
 // angles of a real pose take two passes, those of a slipped encoder a few more
@@ -49,7 +48,7 @@ constexpr double k_mode_slack = 0.02;
 constexpr double k_absurd = 1.0e6;
 
 double wrap(double angle) {
-    return std::remainder(angle, 2.0 * k_pi);
+    return std::remainder(angle, 2.0 * std::numbers::pi);
 }
 
 std::size_t index(int i) {
@@ -302,8 +301,9 @@ Eigen::Matrix<double, 3, 4> PantographKinematics::jacobian(const PantographState
 WorkspaceReport PantographKinematics::workspace(const Pose& pose, const PantographState& state) const {
     WorkspaceReport report;
     report.reach_margin = state.reach_margin;
-    report.rotation_margin =
-        freedoms() == 3 && std::isfinite(pose.z()) ? geometry_.rotation_limit - std::abs(pose.z()) : k_pi;
+    report.rotation_margin = freedoms() == 3 && std::isfinite(pose.z())
+                                 ? geometry_.rotation_limit - std::abs(pose.z())
+                                 : std::numbers::pi;
     report.inside = state.reachable && report.rotation_margin >= 0.0;
     if (freedoms() == 2) {
         report.singularity = line_up(state, 0);
@@ -323,13 +323,13 @@ WorkspaceReport PantographKinematics::workspace(const Pose& pose, const Pantogra
 }
 
 double PantographKinematics::angle_of_count(int i, double count) const {
-    return geometry_.encoder_offset[index(i)] +
-           geometry_.encoder_direction[index(i)] * count * 2.0 * k_pi / geometry_.motor.counts_per_revolution;
+    return geometry_.encoder_offset[index(i)] + geometry_.encoder_direction[index(i)] * count * 2.0 *
+                                                    std::numbers::pi / geometry_.motor.counts_per_revolution;
 }
 
 double PantographKinematics::count_of_angle(int i, double angle) const {
     return geometry_.encoder_direction[index(i)] * (angle - geometry_.encoder_offset[index(i)]) *
-           geometry_.motor.counts_per_revolution / (2.0 * k_pi);
+           geometry_.motor.counts_per_revolution / (2.0 * std::numbers::pi);
 }
 
 } // namespace haptics

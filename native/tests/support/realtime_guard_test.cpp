@@ -29,7 +29,7 @@ using haptics::testing::Violation;
 namespace {
 
 // keeps the compiler from leaving out a call whose result nobody needs
-void* volatile g_sink = nullptr;
+void* volatile g_kept = nullptr;
 // texts that the compiler knows nothing about, lest it picks another function
 const char* volatile g_text = "xyz";
 const char* volatile g_nothing = "";
@@ -69,27 +69,27 @@ TEST_SUITE("the real-time guard" * doctest::skip(!RealtimeGuard::traps())) {
 
     TEST_CASE("traps memory taken and given back") {
         check_trapped(Violation::allocation, "malloc", [] {
-            g_sink = std::malloc(8);
-            std::free(g_sink);
+            g_kept = std::malloc(8);
+            std::free(g_kept);
         });
         check_trapped(Violation::allocation, "malloc", [] {
             const auto made = std::make_unique<int>(1);
-            g_sink = made.get();
+            g_kept = made.get();
         });
         check_trapped(Violation::allocation, "calloc", [] {
-            g_sink = std::calloc(1, 8);
-            std::free(g_sink);
+            g_kept = std::calloc(1, 8);
+            std::free(g_kept);
         });
-        g_sink = nullptr;
+        g_kept = nullptr;
         check_trapped(Violation::allocation, "realloc", [] {
-            void* const nothing = g_sink;
-            g_sink = std::realloc(nothing, 8);
-            std::free(g_sink);
-            g_sink = nullptr;
+            void* const nothing = g_kept;
+            g_kept = std::realloc(nothing, 8);
+            std::free(g_kept);
+            g_kept = nullptr;
         });
         check_trapped(Violation::allocation, "malloc", [] {
             std::string text(100, 'x');
-            g_sink = text.data();
+            g_kept = text.data();
         });
         int* volatile kept[2] = {new int(1), new int(2)};
         int next = 0;
@@ -178,8 +178,8 @@ TEST_SUITE("the real-time guard" * doctest::skip(!RealtimeGuard::traps())) {
         close(file);
         check_trapped(Violation::file, "fopen", [] { std::fclose(std::fopen("/dev/null", "re")); });
         check_trapped(Violation::file, "mmap", [] {
-            g_sink = mmap(nullptr, 4096, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-            munmap(g_sink, 4096);
+            g_kept = mmap(nullptr, 4096, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+            munmap(g_kept, 4096);
         });
         RealtimeGuard guard;
         guard.begin();
@@ -221,7 +221,7 @@ TEST_SUITE("the real-time guard" * doctest::skip(!RealtimeGuard::traps())) {
         std::thread other([] {
             for (int i = 0; i < 100; ++i) {
                 const auto made = std::make_unique<int>(i);
-                g_sink = made.get();
+                g_kept = made.get();
             }
         });
         const timespec brief{0, 1000000};

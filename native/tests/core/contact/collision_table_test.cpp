@@ -21,7 +21,7 @@ namespace {
 using namespace haptics;
 using namespace haptics::shared;
 
-struct Bench {
+struct TableBench {
     CollisionScene scene;
     CollisionWorkspace workspace;
     CollisionSolution solution;
@@ -41,13 +41,13 @@ struct Failures {
     }
 };
 
-double kinetic(const CollisionTool& tool, const FreedomVector& velocity) {
+double kinetic_of(const CollisionTool& tool, const FreedomVector& velocity) {
     return 0.5 * velocity.dot(tool.mass * velocity);
 }
 
 /// Momentum along the motions that no contact sees is kept by every impulse of contacts. True when less than
 /// half is left.
-bool kills_sliding(const Bench& b) {
+bool kills_sliding(const TableBench& b) {
     const Eigen::MatrixXd rows = b.scene.problem.normal_rows;
     const Eigen::MatrixXd w = b.scene.problem.inverse_mass;
     const Eigen::MatrixXd g = rows * w * rows.transpose();
@@ -56,14 +56,14 @@ bool kills_sliding(const Bench& b) {
         const Eigen::VectorXd inside = shared::least_squares(g, rows * velocity);
         return FreedomVector(velocity - w * rows.transpose() * inside);
     };
-    const double before = kinetic(b.scene.tool, outside(b.scene.problem.velocity));
-    const double after = kinetic(b.scene.tool, outside(b.solution.velocity));
-    return before > 1e-3 * kinetic(b.scene.tool, b.scene.problem.velocity) && after < 0.25 * before;
+    const double before = kinetic_of(b.scene.tool, outside(b.scene.problem.velocity));
+    const double after = kinetic_of(b.scene.tool, outside(b.solution.velocity));
+    return before > 1e-3 * kinetic_of(b.scene.tool, b.scene.problem.velocity) && after < 0.25 * before;
 }
 
 Failures run(CollisionMethod method, const CollisionMix& mix, int states) {
     Dice dice(21);
-    const auto b = std::make_unique<Bench>();
+    const auto b = std::make_unique<TableBench>();
     Failures f;
     while (f.states < states) {
         random_scene(dice, mix, b->scene);
@@ -73,7 +73,7 @@ Failures run(CollisionMethod method, const CollisionMix& mix, int states) {
         resolve_collisions(method, p, b->workspace, b->solution);
         const CollisionSolution& s = b->solution;
         ++f.states;
-        const double ratio = kinetic(b->scene.tool, s.velocity) / kinetic(b->scene.tool, p.velocity);
+        const double ratio = kinetic_of(b->scene.tool, s.velocity) / kinetic_of(b->scene.tool, p.velocity);
         f.growing += ratio > 1.0 + 1e-9 ? 1 : 0;
         f.worst_growth = std::max(f.worst_growth, ratio);
         f.pulling += s.normal_impulse.minCoeff() < -1e-9 * s.normal_impulse.cwiseAbs().maxCoeff() ? 1 : 0;

@@ -19,7 +19,7 @@ namespace {
 using namespace haptics;
 using namespace haptics::shared;
 
-struct Bench {
+struct SolverBench {
     CollisionScene scene;
     CollisionWorkspace workspace;
     CollisionSolution solution;
@@ -50,7 +50,7 @@ void line_of_masses(CollisionProblem& p, int masses, const double* mass, double 
 }
 
 /// Rigid tool of 0.3 kg, 2e-4 kg m^2.
-void rigid(Bench& b, int contacts) {
+void rigid(SolverBench& b, int contacts) {
     b.scene.tool = {};
     b.scene.tool.mass.setZero(3, 3);
     b.scene.tool.mass.diagonal() << 0.3, 0.3, 2e-4;
@@ -104,7 +104,7 @@ FreedomVector brute_force_projection(const CollisionProblem& p, const FreedomVec
 TEST_CASE("a single frictionless hit leaves with exactly -e times its velocity and the impulse of its "
           "effective mass") {
     Dice dice(11);
-    const auto b = std::make_unique<Bench>();
+    const auto b = std::make_unique<SolverBench>();
     CollisionMix mix;
     mix.most_contacts = 1;
     mix.friction = false;
@@ -135,7 +135,7 @@ TEST_CASE("a single frictionless hit leaves with exactly -e times its velocity a
 }
 
 TEST_CASE("sliding survives a frictionless hit") {
-    const auto b = std::make_unique<Bench>();
+    const auto b = std::make_unique<SolverBench>();
     rigid(*b, 1);
     place_contact(b->scene, 0, 0, {0.0, -0.02}, {0.0, 1.0});
     b->problem().restitution[0] = 0.4;
@@ -165,7 +165,7 @@ TEST_CASE("sliding survives a frictionless hit") {
 
 TEST_CASE(
     "friction of a hit at the center: sticks inside the cone, else slows by mu times the normal impulse") {
-    const auto b = std::make_unique<Bench>();
+    const auto b = std::make_unique<SolverBench>();
     rigid(*b, 1);
     // a point mass: the contact at the center
     place_contact(b->scene, 0, 0, {0.0, 0.0}, {0.0, 1.0});
@@ -191,7 +191,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a box that falls flat on two corners stops, bounces or slides as one point would") {
-    const auto b = std::make_unique<Bench>();
+    const auto b = std::make_unique<SolverBench>();
     rigid(*b, 2);
     CollisionProblem& p = b->problem();
     for (const double e : {0.0, 0.6, 1.0}) {
@@ -207,7 +207,7 @@ TEST_CASE("a box that falls flat on two corners stops, bounces or slides as one 
 }
 
 TEST_CASE("a chain of equal balls hit at one end: all of the chain moves, with its momentum and its energy") {
-    const auto b = std::make_unique<Bench>();
+    const auto b = std::make_unique<SolverBench>();
     const std::array<double, 3> mass{1.0, 1.0, 1.0};
     line_of_masses(b->problem(), 3, mass.data(), 1.0);
     b->problem().velocity[0] = 1.0;
@@ -223,7 +223,7 @@ TEST_CASE("a chain of equal balls hit at one end: all of the chain moves, with i
 
 TEST_CASE("a light ball leaves at (1 + e) times the speed of a heavy one, and stops as a wall when it is the "
           "heavy one") {
-    const auto b = std::make_unique<Bench>();
+    const auto b = std::make_unique<SolverBench>();
     std::array<double, 2> mass{1000.0, 1.0};
     line_of_masses(b->problem(), 2, mass.data(), 0.7);
     b->problem().velocity[0] = 1.0;
@@ -238,7 +238,7 @@ TEST_CASE("a light ball leaves at (1 + e) times the speed of a heavy one, and st
 
 TEST_CASE(
     "a tool squeezed between closing walls gets bounded impulses, and the squeezed contact is reported") {
-    const auto b = std::make_unique<Bench>();
+    const auto b = std::make_unique<SolverBench>();
     rigid(*b, 2);
     place_contact(b->scene, 0, 0, {0.04, 0.0}, {-1.0, 0.0});
     place_contact(b->scene, 1, 0, {-0.04, 0.0}, {1.0, 0.0});
@@ -254,7 +254,7 @@ TEST_CASE(
 }
 
 TEST_CASE("rows of zeros, no contacts and contacts that only separate change nothing") {
-    const auto b = std::make_unique<Bench>();
+    const auto b = std::make_unique<SolverBench>();
     rigid(*b, 1);
     CollisionProblem& p = b->problem();
     p.velocity << 0.1, -0.2, 0.3;
@@ -279,7 +279,7 @@ TEST_CASE("rows of zeros, no contacts and contacts that only separate change not
 
 TEST_CASE("the compression is the projection that brute force over all active sets finds") {
     Dice dice(13);
-    const auto b = std::make_unique<Bench>();
+    const auto b = std::make_unique<SolverBench>();
     CollisionMix mix;
     mix.most_contacts = 6;
     mix.friction = false;
@@ -303,7 +303,7 @@ TEST_CASE("the compression is the projection that brute force over all active se
 
 TEST_CASE("with equal restitutions the bounce is the projection of the reflected motion") {
     Dice dice(14);
-    const auto b = std::make_unique<Bench>();
+    const auto b = std::make_unique<SolverBench>();
     CollisionMix mix;
     mix.most_contacts = 6;
     mix.friction = false;
@@ -326,7 +326,7 @@ TEST_CASE("with equal restitutions the bounce is the projection of the reflected
 
 TEST_CASE("friction that the exact solver handles opposes the slip and is full where the contact slips") {
     Dice dice(15);
-    const auto b = std::make_unique<Bench>();
+    const auto b = std::make_unique<SolverBench>();
     CollisionMix mix;
     mix.restitution = 0.0;
     mix.singular = false;
@@ -361,7 +361,7 @@ TEST_CASE("friction that the exact solver handles opposes the slip and is full w
 }
 
 TEST_CASE("collisions take nothing from the heap, and give the same bits every time") {
-    const auto b = std::make_unique<Bench>();
+    const auto b = std::make_unique<SolverBench>();
     std::array<std::uint64_t, 2> hash{};
     for (std::uint64_t& h : hash) {
         Dice dice(16);

@@ -2,14 +2,14 @@
 
 #include <doctest/doctest.h>
 
+#include <numbers>
+
 #include "contact_scenes.hpp"
 
 using namespace haptics;
 using namespace haptics::testing;
 
 namespace {
-
-constexpr double k_pi = 3.14159265358979323846;
 
 double angle_between(const Vec2& a, const Vec2& b) {
     return std::abs(std::atan2(cross(a, b), a.dot(b)));
@@ -51,7 +51,7 @@ TEST_CASE("around a rounded corner the normal turns by at most motion over radiu
             center = pose.head<2>();
             pose.head<2>() += -(low + 1e-4) * patch.normal + 2e-5 * perpendicular(-patch.normal);
         }
-        CHECK(turned > k_pi);
+        CHECK(turned > std::numbers::pi);
     }
 }
 

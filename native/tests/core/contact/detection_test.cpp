@@ -2,14 +2,14 @@
 
 #include <doctest/doctest.h>
 
+#include <numbers>
+
 #include "contact_scenes.hpp"
 
 using namespace haptics;
 using namespace haptics::testing;
 
 namespace {
-
-constexpr double k_pi = 3.14159265358979323846;
 
 /// A tool with one piece above one fixed piece.
 struct Scene {
@@ -45,7 +45,8 @@ TEST_CASE("a level box on a half-plane is one patch with two ends of equal share
 }
 
 TEST_CASE("a box on its corner has one point with the whole share") {
-    Scene scene(make_box(Vec2{0, 0}, Vec2{0.02, 0.02}), Pose{0, 0.01 * std::sqrt(2.0) - 5e-5, k_pi / 4});
+    Scene scene(make_box(Vec2{0, 0}, Vec2{0.02, 0.02}),
+                Pose{0, 0.01 * std::sqrt(2.0) - 5e-5, std::numbers::pi / 4});
     add_body(*scene.neighbors, 7, BodyKind::fixed, Pose{0, -0.05, 0}, {make_box(Vec2{0, 0}, Vec2{0.3, 0.1})});
     scene.detect();
     REQUIRE(scene.patches.count == 1);

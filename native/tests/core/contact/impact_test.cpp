@@ -16,7 +16,7 @@ namespace {
 
 using Random = std::mt19937_64;
 
-double uniform(Random& random, double low, double high) {
+double between(Random& random, double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
 }
 
@@ -65,14 +65,14 @@ double brute_distance(const Convex& a, const Pose& pose_a, const Convex& b, cons
 
 Convex random_convex(Random& random) {
     if (random() % 5 == 0)
-        return make_disc(Vec2{uniform(random, -0.005, 0.005), 0}, uniform(random, 0.001, 0.01));
+        return make_disc(Vec2{between(random, -0.005, 0.005), 0}, between(random, 0.001, 0.01));
     if (random() % 5 == 0)
-        return make_capsule(Vec2{-0.01, 0}, Vec2{uniform(random, 0.0, 0.01), 0.002},
-                            uniform(random, 0.0, 0.005));
+        return make_capsule(Vec2{-0.01, 0}, Vec2{between(random, 0.0, 0.01), 0.002},
+                            between(random, 0.0, 0.005));
     const int count = 3 + static_cast<int>(random() % 10);
     std::vector<Vec2> outline;
     for (int i = 0; i < count; ++i) {
-        const double angle = (6.2831853 * i + uniform(random, 0, 3.0)) / count;
+        const double angle = (6.2831853 * i + between(random, 0, 3.0)) / count;
         outline.push_back(Vec2{0.02 * std::cos(angle), 0.015 * std::sin(angle)});
     }
     return make_convex(outline, random() % 2 == 0 ? 0.0 : 0.002);
@@ -89,8 +89,8 @@ TEST_CASE("the gap of two separate pieces is their brute-force distance, and the
         auto set = make_set();
         const Convex a = random_convex(random);
         const Convex b = random_convex(random);
-        const Pose at_a{uniform(random, -0.05, 0.05), uniform(random, -0.05, 0.05), uniform(random, -3, 3)};
-        const Pose at_b{0, 0, uniform(random, -3, 3)};
+        const Pose at_a{between(random, -0.05, 0.05), between(random, -0.05, 0.05), between(random, -3, 3)};
+        const Pose at_b{0, 0, between(random, -3, 3)};
         if (a.count == 0 || b.count == 0)
             continue;
         const double truth = brute_distance(a, at_a, b, at_b);
@@ -127,11 +127,11 @@ TEST_CASE("the time of impact is where sampling and bisection find the first tou
         const Convex b = random_convex(random);
         if (a.count == 0 || b.count == 0)
             continue;
-        const Vec2 away = rotate(uniform(random, -3.14, 3.14), Vec2{uniform(random, 0.03, 0.06), 0});
-        const Pose at_a{away.x(), away.y(), uniform(random, -3, 3)};
-        const Twist twist_a{-away.x() * uniform(random, 5, 80), -away.y() * uniform(random, 5, 80),
-                            uniform(random, -200, 200)};
-        const Twist twist_b{uniform(random, -2, 2), 0, random() % 2 == 0 ? 0.0 : uniform(random, -50, 50)};
+        const Vec2 away = rotate(between(random, -3.14, 3.14), Vec2{between(random, 0.03, 0.06), 0});
+        const Pose at_a{away.x(), away.y(), between(random, -3, 3)};
+        const Twist twist_a{-away.x() * between(random, 5, 80), -away.y() * between(random, 5, 80),
+                            between(random, -200, 200)};
+        const Twist twist_b{between(random, -2, 2), 0, random() % 2 == 0 ? 0.0 : between(random, -50, 50)};
         const double step = 0.02;
         if (brute_distance(a, at_a, b, Pose{0, 0, 0}) <= 0.0)
             continue;

@@ -102,7 +102,7 @@ ObservedToolOptions direct(int delay_steps) {
     return o;
 }
 
-void write_table(const char* path) {
+void write_stiffness_table(const char* path) {
     std::ofstream out(path);
     REQUIRE(out.good());
     out << "| delay steps | coupling | encoder µm | noise N | coupling N/m | 5 Hz N/m | over direct | 30 Hz "
@@ -213,7 +213,7 @@ TEST_SUITE("observed tool") {
             CHECK(handle_stiffness(four_channel, 30.0) > (delay == 0 ? 6.0 : 2.5) * fast);
         }
         if (const char* path = std::getenv("HAPTICS_STIFFNESS_TABLE"))
-            write_table(path);
+            write_stiffness_table(path);
     }
 
     TEST_CASE("a free tool as heavy as the device weighs less than both together, and moves without clicks") {

@@ -21,7 +21,7 @@ using namespace haptics;
 namespace {
 
 // equal within a share of the value
-doctest::Approx within(double value, double share) {
+doctest::Approx within_share(double value, double share) {
     return doctest::Approx(value).epsilon(share).scale(0.0);
 }
 
@@ -116,7 +116,7 @@ TEST_CASE(
                         const int steps = d.run(rate);
                         REQUIRE(steps > 0);
                         CHECK_FALSE(d.gave_way);
-                        CHECK(d.impulse == within(2.0 * mass * k_speed, 1e-10));
+                        CHECK(d.impulse == within_share(2.0 * mass * k_speed, 1e-10));
                         worst_energy = std::max(
                             worst_energy, std::abs(d.energy() / (0.5 * mass * k_speed * k_speed) - 1.0));
                         // time in contact = all time - falling - rising
@@ -251,18 +251,18 @@ TEST_CASE("exact: a coupling adds its mean force, and its limit holds") {
     d.data->velocity.setZero();
     step(d.model, *d.data, hand, 0.002, d.out);
     const double w = std::sqrt(300.0 / 0.2);
-    CHECK(d.data->pose.x() == within(0.01 * (1.0 - std::cos(0.002 * w)), 1e-12));
-    CHECK(d.data->velocity.x() == within(0.01 * w * std::sin(0.002 * w), 1e-12));
-    CHECK(d.out.coupling.x() == within(0.2 * d.data->velocity.x() / 0.002, 1e-12));
+    CHECK(d.data->pose.x() == within_share(0.01 * (1.0 - std::cos(0.002 * w)), 1e-12));
+    CHECK(d.data->velocity.x() == within_share(0.01 * w * std::sin(0.002 * w), 1e-12));
+    CHECK(d.out.coupling.x() == within_share(0.2 * d.data->velocity.x() / 0.002, 1e-12));
 
     Drop held(Shape::disc, 0.2, 1e4, 0.0, 0.5);
     held.data->velocity.setZero();
     hand.target = held.data->pose + Pose(0.01, 0.0, 0.0);
     hand.max_force = 1.0;
     step(held.model, *held.data, hand, 0.002, held.out);
-    CHECK(held.out.coupling.x() == within(1.0, 1e-9));
+    CHECK(held.out.coupling.x() == within_share(1.0, 1e-9));
     CHECK(held.out.full_coupling.x() > 2.5);
-    CHECK(held.data->velocity.x() == within(0.002 / 0.2, 1e-9));
+    CHECK(held.data->velocity.x() == within_share(0.002 / 0.2, 1e-9));
 }
 
 TEST_CASE(
@@ -296,10 +296,10 @@ TEST_CASE(
                 const MovableBelief& object = d.data->movable[0].belief;
                 CHECK(d.data->velocity.x() ==
                       doctest::Approx(k_speed * (1.0 - ratio) / (1.0 + ratio)).epsilon(1e-9).scale(k_speed));
-                CHECK(object.velocity.x() == within(k_speed * 2.0 / (1.0 + ratio), 1e-9));
-                CHECK(object.given.x() == within(b.mass * object.velocity.x(), 1e-9));
+                CHECK(object.velocity.x() == within_share(k_speed * 2.0 / (1.0 + ratio), 1e-9));
+                CHECK(object.given.x() == within_share(b.mass * object.velocity.x(), 1e-9));
                 // the object took its energy from the tool
-                CHECK(work == within(-0.5 * b.mass * object.velocity.x() * object.velocity.x(), 1e-9));
+                CHECK(work == within_share(-0.5 * b.mass * object.velocity.x() * object.velocity.x(), 1e-9));
             }
 }
 

@@ -1,5 +1,5 @@
-// Random trees of revolute, prismatic and fixed joints as tools, grounded and floating, among random boxes
-// and discs, held and free: what has to hold whatever the scene is.
+// shared::Random trees of revolute, prismatic and fixed joints as tools, grounded and floating, among random
+// boxes and discs, held and free: what has to hold whatever the scene is.
 
 #include <haptics/shared/linkage_tools.hpp>
 
@@ -10,7 +10,6 @@
 
 using namespace haptics;
 using shared::linkage_tool;
-using shared::Random;
 
 namespace {
 
@@ -21,7 +20,7 @@ struct Scene {
     double softest{1e300};
 };
 
-Surface random_surface(Random& random) {
+Surface random_surface(shared::Random& random) {
     Surface s;
     s.stiffness = std::pow(10.0, random.uniform(2.0, 7.0));
     s.damping = std::pow(10.0, random.uniform(-1.0, 2.5));
@@ -32,7 +31,7 @@ Surface random_surface(Random& random) {
 }
 
 // a linkage with random joints, limits, friction, damping and springs, at rest or in motion
-Scene random_scene(Random& random, bool with_gravity) {
+Scene random_scene(shared::Random& random, bool with_gravity) {
     shared::RandomLinkage kind;
     kind.links = random.integer(1, 14);
     kind.base = random.integer(0, 1) == 0 ? BaseKind::grounded : BaseKind::floating;
@@ -100,7 +99,7 @@ std::uint64_t hash_of(const LinkageVector& v, std::uint64_t hash) {
 
 TEST_SUITE("random linkages") {
     TEST_CASE("free linkages among walls: finite, no energy out of nothing, no deep overlap") {
-        Random random(77);
+        shared::Random random(77);
         int contacts = 0;
         int collisions = 0;
         for (int trial = 0; trial < 200; ++trial) {
@@ -131,7 +130,7 @@ TEST_SUITE("random linkages") {
     }
 
     TEST_CASE("held and pulled about under gravity: finite, and never faster than the pull can make it") {
-        Random random(78);
+        shared::Random random(78);
         for (int trial = 0; trial < 100; ++trial) {
             Scene scene = random_scene(random, true);
             // walls up to 1e7 N/m at 1 ms are beyond the semi-implicit integrator
@@ -170,7 +169,7 @@ TEST_SUITE("random linkages") {
     TEST_CASE("the same scene gives the same bits") {
         std::uint64_t hashes[2]{};
         for (std::uint64_t& hash : hashes) {
-            Random random(79);
+            shared::Random random(79);
             hash = 0xcbf29ce484222325ULL;
             for (int trial = 0; trial < 20; ++trial) {
                 Scene scene = random_scene(random, true);

@@ -13,7 +13,7 @@ using namespace haptics;
 namespace {
 
 /// Bodies with small boxes at given places (body axes).
-struct Scene {
+struct Pieces {
     std::vector<std::unique_ptr<std::vector<Piece>>> pieces;
     std::vector<std::unique_ptr<std::vector<PieceBounds>>> bounds;
     std::vector<Candidate> candidates;
@@ -52,7 +52,7 @@ std::vector<Vec2> row(int count, double pitch) {
 TEST_SUITE("select_near") {
     TEST_CASE("of a long body only the pieces within the disc come, also when it is turned and moved") {
         const double pi = std::acos(-1.0);
-        Scene scene;
+        Pieces scene;
         scene.add(BodyKind::fixed, Pose(0, 0, 0), row(1000, 0.01));
         scene.add(BodyKind::kinematic, Pose(1.0, 0.5, 0.5 * pi), row(1000, 0.01)); // upward from (1, 0.5)
         const LeftOut left = scene.select({{Vec2(1.0, 0.0), 0.0305}, {Vec2(1.0, 1.0), 0.0205}});
@@ -68,7 +68,7 @@ TEST_SUITE("select_near") {
     }
 
     TEST_CASE("a movable body comes whole or not at all") {
-        Scene scene;
+        Pieces scene;
         scene.add(BodyKind::movable, Pose(0, 0, 0), row(10, 0.01));
         scene.add(BodyKind::movable, Pose(0, 1, 0), row(10, 0.01));
         scene.select({{Vec2(0, 0), 0.02}});
@@ -78,7 +78,7 @@ TEST_SUITE("select_near") {
     }
 
     TEST_CASE("a half-plane is everywhere, and without discs everything is near") {
-        Scene scene;
+        Pieces scene;
         scene.add(BodyKind::fixed, Pose(0, 0, 0), row(3, 5.0));
         (*scene.pieces[0])[2].convex = make_half_plane(Vec2(0, 0), Vec2(0, 1));
         (*scene.bounds[0])[2] = bounds_of((*scene.pieces[0])[2].convex);
@@ -89,7 +89,7 @@ TEST_SUITE("select_near") {
     }
 
     TEST_CASE("what does not fit is counted, and the nearest stay") {
-        Scene scene;
+        Pieces scene;
         testing::Random random(11);
         for (int i = 0; i < 300; ++i)
             scene.add(BodyKind::fixed,
@@ -119,7 +119,7 @@ TEST_SUITE("select_near") {
     }
 
     TEST_CASE("more bodies than fit: the nearest bodies stay, in the order given") {
-        Scene scene;
+        Pieces scene;
         for (int i = 0; i < 200; ++i)
             scene.add(BodyKind::fixed, Pose(0.01 * (199 - i), 0, 0), row(1, 0.0));
         const LeftOut left = scene.select({{Vec2(0, 0), 5.0}});

@@ -19,7 +19,7 @@ using namespace haptics;
 
 namespace {
 
-constexpr double k_mass = 0.3;
+constexpr double k_block_mass = 0.3;
 constexpr double k_spring = 200.0;
 constexpr double k_normal = 2.0;
 constexpr double k_belt = 0.02;
@@ -33,7 +33,7 @@ struct Swing {
 };
 
 Swing closed_form() {
-    const double w = std::sqrt(k_spring / k_mass);
+    const double w = std::sqrt(k_spring / k_block_mass);
     const double start = (k_static - k_dynamic) * k_normal / k_spring;
     const double angle = std::atan(start * w / k_belt);
     return {(2.0 * std::numbers::pi - 2.0 * angle) / w + 2.0 * start / k_belt,
@@ -41,7 +41,7 @@ Swing closed_form() {
 }
 
 Swing run(Integrator integrator, double stiffness, double damping, double rate) {
-    Model model = shared::box_tool(k_mass);
+    Model model = shared::box_tool(k_block_mass);
     model.settings.integrator = integrator;
     auto data = std::make_unique<Data>();
     reset(model, *data, Pose(0.0, 0.01, 0.0));

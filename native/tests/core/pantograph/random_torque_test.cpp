@@ -115,7 +115,7 @@ Parts parts_of(const PantographKinematics& kinematics, const Pose& pose, std::si
             std::atan2(link.y(), link.x())};
 }
 
-double kinetic_energy(const PantographKinematics& kinematics, const Pose& pose, const Twist& twist) {
+double energy_by_differences(const PantographKinematics& kinematics, const Pose& pose, const Twist& twist) {
     const double h = 2.0e-5;
     const PantographGeometry& g = kinematics.geometry();
     const auto rate = [h](double after, double before) {
@@ -221,7 +221,7 @@ TEST_SUITE("random pantographs") {
                     twist.z() = 0.0;
                 const Mat3 mass = handle_mass_matrix(kinematics, state);
                 REQUIRE(0.5 * twist.dot(mass * twist) ==
-                        doctest::Approx(kinetic_energy(kinematics, pose, twist)).epsilon(1.0e-5));
+                        doctest::Approx(energy_by_differences(kinematics, pose, twist)).epsilon(1.0e-5));
                 // d/dt (M v) at constant v, less the slope of the energy; steps small against the margin
                 const auto mass_at = [&](const Pose& at) {
                     return handle_mass_matrix(kinematics, kinematics.locate(at));

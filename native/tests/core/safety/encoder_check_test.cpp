@@ -17,7 +17,7 @@ using haptics::testing::random_geometry;
 
 namespace {
 
-constexpr double k_dt = 1.0e-3;
+constexpr double k_step = 1.0e-3;
 
 // a handle path through the middle of the workspace, smooth, up to about 0.5 m/s
 struct Path {
@@ -106,18 +106,18 @@ struct Run {
 Run run(const PantographKinematics& figures, const TrueDevice& device, const Path& path, EncoderCheck& check,
         double seconds, int slip_axis, double slip_counts, double slip_at) {
     Run result;
-    const int steps = static_cast<int>(seconds / k_dt);
+    const int steps = static_cast<int>(seconds / k_step);
     for (int k = 0; k < steps; ++k) {
         JointVector slip = JointVector::Zero();
-        const bool after = slip_axis >= 0 && k * k_dt >= slip_at;
+        const bool after = slip_axis >= 0 && k * k_step >= slip_at;
         if (after)
             slip[slip_axis] = slip_counts;
-        const JointVector angles = device.read(figures, path.at(k * k_dt), slip);
-        check.update(angles, figures.forward(angles), k_dt);
+        const JointVector angles = device.read(figures, path.at(k * k_step), slip);
+        check.update(angles, figures.forward(angles), k_step);
         result.strain = std::max(result.strain, check.strain());
         if (check.slipped()) {
             result.slipped = true;
-            result.steps_to_alarm = k - static_cast<int>(slip_at / k_dt);
+            result.steps_to_alarm = k - static_cast<int>(slip_at / k_step);
             return result;
         }
     }
@@ -186,18 +186,18 @@ TEST_SUITE("encoder check") {
             JointVector slip = JointVector::Zero();
             slip[axis] = std::ceil(least * 1.05) * (random.below(2) == 0 ? 1.0 : -1.0);
             for (int k = 0; k < 10; ++k) {
-                check.update(angles, estimate, k_dt);
+                check.update(angles, estimate, k_step);
                 REQUIRE_FALSE(check.slipped());
             }
             const JointVector after = device.read(figures, pose, slip);
             const PoseEstimate wrong = figures.forward(after);
-            CHECK_FALSE(check.update(after, wrong, k_dt));
-            CHECK_FALSE(check.update(after, wrong, k_dt));
+            CHECK_FALSE(check.update(after, wrong, k_step));
+            CHECK_FALSE(check.update(after, wrong, k_step));
             // a large slip first looks like a quick motion, for which the skew is allowed
-            check.update(after, wrong, k_dt);
-            CHECK(check.update(after, wrong, k_dt));
+            check.update(after, wrong, k_step);
+            CHECK(check.update(after, wrong, k_step));
             // latched, until homed
-            check.update(angles, estimate, k_dt);
+            check.update(angles, estimate, k_step);
             CHECK(check.slipped());
             check.reset();
             CHECK_FALSE(check.slipped());
@@ -223,7 +223,7 @@ TEST_SUITE("encoder check") {
                 const Run r = run(figures, device, path, check, 2.1, random.below(4), sizes[s], 0.6);
                 CHECK((!r.slipped || r.steps_to_alarm >= 2));
                 seen[s] += r.slipped ? 1 : 0;
-                time[s] += r.slipped ? r.steps_to_alarm * k_dt : 0.0;
+                time[s] += r.slipped ? r.steps_to_alarm * k_step : 0.0;
             }
         for (std::size_t s = 0; s < sizes.size(); ++s)
             MESSAGE(sizes[s] << " counts: seen " << seen[s] << " of " << k_runs << " within 1.5 s, after "
@@ -247,8 +247,8 @@ TEST_SUITE("encoder check") {
                 JointVector slip = JointVector::Zero();
                 // a count every tenth of a second: no two readings a moment apart tell
                 slip[n % 4] = std::floor(std::max(0.0, (k - 2000) * 0.01));
-                const JointVector angles = device.read(figures, path.at(k * k_dt), slip);
-                check.update(angles, figures.forward(angles), k_dt);
+                const JointVector angles = device.read(figures, path.at(k * k_step), slip);
+                check.update(angles, figures.forward(angles), k_step);
             }
             seen += check.slipped() ? 1 : 0;
         }
@@ -264,7 +264,7 @@ TEST_SUITE("encoder check") {
             JointVector read = angles;
             if (k % 20 < 2)
                 read[k % 4] += 0.01;
-            check.update(read, figures.forward(read), k_dt);
+            check.update(read, figures.forward(read), k_step);
         }
         CHECK_FALSE(check.slipped());
     }
@@ -278,7 +278,7 @@ TEST_SUITE("encoder check") {
         CHECK(std::isinf(check.smallest_slip(angles, 0)));
         for (int k = 0; k < 100; ++k) {
             angles[0] += k == 50 ? 0.2 : 0.0;
-            CHECK_FALSE(check.update(angles, figures.forward(angles), k_dt));
+            CHECK_FALSE(check.update(angles, figures.forward(angles), k_step));
         }
     }
 
@@ -291,7 +291,7 @@ TEST_SUITE("encoder check") {
         for (int k = 0; k < 2000; ++k) {
             JointVector angles(random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-9, 9),
                                random.below(9) == 0 ? nan : 1.0);
-            check.update(angles, figures.forward(angles), random.below(9) == 0 ? nan : k_dt);
+            check.update(angles, figures.forward(angles), random.below(9) == 0 ? nan : k_step);
             if (k % 50 == 0)
                 check.reset();
         }

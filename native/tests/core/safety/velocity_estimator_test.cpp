@@ -11,7 +11,7 @@ using namespace haptics;
 
 namespace {
 
-constexpr double k_dt = 1.0e-3;
+constexpr double k_sample = 1.0e-3;
 constexpr double k_step = 25.0e-6;
 
 double quantized(double x) {
@@ -32,11 +32,11 @@ Errors compare(Motion motion, Speed speed) {
     double last = quantized(motion(0.0));
     int count = 0;
     for (int k = 1; k < 4000; ++k) {
-        const double x = quantized(motion(k * k_dt));
-        const double v = estimator.update(Pose(x, 0.0, 0.0), k_dt).x();
+        const double x = quantized(motion(k * k_sample));
+        const double v = estimator.update(Pose(x, 0.0, 0.0), k_sample).x();
         if (k > 100) {
-            sum += std::pow(v - speed(k * k_dt), 2.0);
-            plain += std::pow((x - last) / k_dt - speed(k * k_dt), 2.0);
+            sum += std::pow(v - speed(k * k_sample), 2.0);
+            plain += std::pow((x - last) / k_sample - speed(k * k_sample), 2.0);
             ++count;
         }
         last = x;
@@ -52,12 +52,13 @@ TEST_SUITE("velocity estimator") {
             VelocityEstimator estimator(Vec3::Constant(0.5 * k_step), 20);
             double worst = 0.0;
             for (int k = 0; k < 3000; ++k) {
-                const double v = estimator.update(Pose(quantized(speed * k * k_dt), 0.0, 0.0), k_dt).x();
+                const double v =
+                    estimator.update(Pose(quantized(speed * k * k_sample), 0.0, 0.0), k_sample).x();
                 if (k > 50)
                     worst = std::max(worst, std::abs(v - speed));
             }
             CHECK(estimator.window()[0] == 20);
-            CHECK(worst <= k_step / (20 * k_dt) * 1.0001);
+            CHECK(worst <= k_step / (20 * k_sample) * 1.0001);
         }
     }
 
@@ -75,10 +76,10 @@ TEST_SUITE("velocity estimator") {
     TEST_CASE("a sudden stop is seen within the error, with no long tail") {
         VelocityEstimator estimator(Vec3::Constant(0.5 * k_step));
         for (int k = 0; k <= 100; ++k)
-            estimator.update(Pose(0.3 * k * k_dt, 0.0, 0.0), k_dt);
+            estimator.update(Pose(0.3 * k * k_sample, 0.0, 0.0), k_sample);
         Twist v = Twist::Zero();
         for (int k = 0; k < 2; ++k)
-            v = estimator.update(Pose(0.03, 0.0, 0.0), k_dt);
+            v = estimator.update(Pose(0.03, 0.0, 0.0), k_sample);
         CHECK(std::abs(v.x()) < 1.0e-9);
     }
 
@@ -98,10 +99,10 @@ TEST_SUITE("velocity estimator") {
         VelocityEstimator estimator(Vec3::Constant(1.0e-6));
         const haptics::testing::AllocationGuard guard;
         for (int k = 0; k < 50; ++k)
-            estimator.update(Pose(0.1 * k * k_dt, 0.0, 0.0), k_dt);
+            estimator.update(Pose(0.1 * k * k_sample, 0.0, 0.0), k_sample);
         const double before = estimator.velocity().x();
         const double nan = std::numeric_limits<double>::quiet_NaN();
-        estimator.update(Pose(nan, 0.0, 0.0), k_dt);
+        estimator.update(Pose(nan, 0.0, 0.0), k_sample);
         estimator.update(Pose::Zero(), 0.0);
         estimator.update(Pose::Zero(), nan);
         const auto allocations = guard.allocations();

@@ -10,7 +10,7 @@ using namespace haptics;
 
 namespace {
 
-constexpr double k_dt = 1.0e-3;
+constexpr double k_hand_step = 1.0e-3;
 
 enum class Frames { even, jittered, bunched };
 
@@ -57,7 +57,7 @@ Clicks follow(double frame_rate, Frames frames) {
             if (frames == Frames::jittered)
                 next += frame * random.uniform(-0.3, 0.3);
         }
-        device.advance(k_dt);
+        device.advance(k_hand_step);
         const Wrench force = device.hand_force();
         if (k > 1000) {
             clicks.force = std::max(clicks.force, (force - last).head<2>().norm());
@@ -70,12 +70,12 @@ Clicks follow(double frame_rate, Frames frames) {
     for (int lag = 0; lag < 200; ++lag) {
         double worst = 0.0;
         for (int k = 1500; k < 4000; ++k) {
-            const double t = k_dt * (k + 1 - lag);
+            const double t = k_hand_step * (k + 1 - lag);
             worst = std::max(worst, (path[static_cast<std::size_t>(k)] - motion(t)).head<2>().norm());
         }
         if (worst < clicks.error) {
             clicks.error = worst;
-            clicks.lag = lag * k_dt;
+            clicks.lag = lag * k_hand_step;
         }
     }
     return clicks;
@@ -112,7 +112,7 @@ TEST_SUITE("simulated hand") {
             const bool stalled = now > 1.2 && now < 1.28;
             if (k % 16 == 0 && !stalled)
                 device.set_target({now, Pose(0.05 * u * u * u * (10.0 - 15.0 * u + 6.0 * u * u), 0.0, 0.0)});
-            device.advance(k_dt);
+            device.advance(k_hand_step);
             worst = std::max(worst, (device.hand_force() - last).head<2>().norm());
             last = device.hand_force();
             if (now < 1.2)
@@ -130,7 +130,7 @@ TEST_SUITE("simulated hand") {
         SimulatedPantograph device(options);
         for (int k = 0; k < 500; ++k) {
             device.set_target({device.time(), Pose(5.0, -5.0, 3.0)});
-            device.advance(k_dt);
+            device.advance(k_hand_step);
             const Wrench muscles = device.hand().force(device.true_pose(), device.true_twist());
             REQUIRE(muscles.head<2>().norm() <= 8.0 * (1.0 + 1.0e-12));
             REQUIRE(std::abs(muscles.z()) <= 0.2);
@@ -144,7 +144,7 @@ TEST_SUITE("simulated hand") {
         // held by an equal force of the device
         for (int k = 0; k < 200; ++k) {
             device.write(k < 100 ? Wrench(Wrench::Zero()) : Wrench(0.0, 2.0, 0.0));
-            device.advance(k_dt);
+            device.advance(k_hand_step);
             if (k < 99)
                 CHECK(device.hand_force().norm() == 0.0);
         }
@@ -196,7 +196,7 @@ TEST_SUITE("simulated hand") {
         SimulatedPantograph device(options);
         double worst = 0.0;
         for (int k = 0; k < 2000; ++k) {
-            device.advance(k_dt);
+            device.advance(k_hand_step);
             worst = std::max(worst, std::abs(device.true_pose().x() - device.hand().wish().x()));
         }
         // 0.45 kg at 0.2 m/s^2 and 1 N s/m at 0.063 m/s on 1000 N/m: 0.09 + 0.06 mm

@@ -23,7 +23,7 @@ SimulatedPantographOptions bare() {
     return options;
 }
 
-double kinetic(const SimulatedPantograph& device) {
+double kinetic_of(const SimulatedPantograph& device) {
     const Twist& v = device.true_twist();
     return 0.5 * v.dot(device.handle_mass(device.true_pose()) * v);
 }
@@ -96,12 +96,12 @@ TEST_SUITE("simulated pantograph") {
             SimulatedPantograph device(options);
             const Twist twist(0.12, -0.08, geometry.bar_count == 2 ? 1.5 : 0.0);
             REQUIRE(device.place(Pose(-0.01, 0.01, 0.0), twist));
-            const double before = kinetic(device);
+            const double before = kinetic_of(device);
             double worst = 0.0;
             Mat3 first = device.handle_mass(device.true_pose());
             for (int k = 0; k < 250; ++k) {
                 device.advance(1.0e-3);
-                worst = std::max(worst, std::abs(kinetic(device) / before - 1.0));
+                worst = std::max(worst, std::abs(kinetic_of(device) / before - 1.0));
             }
             CHECK(worst < 1.0e-6);
             // and the inertia really changed on the way
@@ -116,14 +116,14 @@ TEST_SUITE("simulated pantograph") {
         SimulatedPantograph device(options);
         const auto total = [&] {
             const PantographState state = device.kinematics().locate(device.true_pose());
-            return kinetic(device) +
+            return kinetic_of(device) +
                    gravity_potential(device.kinematics(), device.true_pose(), state, options.gravity);
         };
         const double before = total();
         for (int k = 0; k < 250; ++k)
             device.advance(1.0e-3);
         CHECK(device.true_pose().y() < -0.01);
-        CHECK(std::abs(total() - before) < 1.0e-6 * kinetic(device));
+        CHECK(std::abs(total() - before) < 1.0e-6 * kinetic_of(device));
     }
 
     TEST_CASE("rounding of the handle encoder is even and has the variance of a uniform error") {
