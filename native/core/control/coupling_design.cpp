@@ -15,6 +15,11 @@
 // Four channels (coupling.cpp): with a = m/(m + m_proxy) the proxy gets a f besides F, the wall answers F + a
 // f, and the handle gets a times that.
 //
+// Acceleration feed-forward (shared_motion.cpp): with the visible mass m' (m against a wall) the proxy gets L =
+// f m_proxy/(m_proxy + m'), the handle m L/m_proxy - f, which is known before the coupling is solved and so
+// moves x_end too. Coupling and observer are chosen with nothing hidden; then the most is hidden, by steps of
+// 0.05, with which the same loops stay stable.
+//
 // Choice. Over a grid of observer bandwidths, stiffnesses and damping ratios: stable for the assumed mass off
 // by mass_error and for more than that (k_margin), for hands from none to the stiffest, walls and free
 // proxies; force noise within the budget; then the largest geometric mean of the dynamic stiffness at 5 and
@@ -55,6 +60,9 @@ struct Loop {
     double share; // a
     // truth
     LoopCase truth;
+    bool transparent;
+    double lead;     // L / f
+    double feed;     // of the handle, over f
     // handle over one step with a held force: exact for mass, spring and damper
     Mat2 motion;
     Vec2 push;
@@ -92,7 +100,11 @@ Loop make_loop(const LoopFigures& figures, const CouplingDesign& design, const L
     loop.k = (1.0 - p) * (1.0 - p) * (1.0 - p) / (figures.step * figures.step);
     loop.gains = solver_gains(design.stiffness, design.damping, 1.0 / figures.mass, figures.step);
     loop.truth = truth;
+    loop.transparent = figures.four_channel && figures.transparent;
     loop.share = figures.four_channel ? figures.mass / (figures.mass + truth.proxy_mass) : 0.0;
+    const double visible = figures.mass * (truth.wall ? 1.0 : 1.0 - design.hidden);
+    loop.lead = truth.proxy_mass / (truth.proxy_mass + visible);
+    loop.feed = figures.mass / (truth.proxy_mass + visible) - 1.0;
     solve_handle(loop);
     return loop;
 }
@@ -124,22 +136,27 @@ Passed pass(const Loop& loop, const State& z, double error, double hand) {
     // end of the step without the new force
     xa += t * va + 0.5 * t * t * f / m;
     va += t * f / m;
+    if (loop.transparent) {
+        xa += 0.5 * t * t * loop.feed * f / m;
+        va += t * loop.feed * f / m;
+    }
+    const double to_proxy = (loop.transparent ? loop.lead : loop.share) * f;
     Passed out{State::Zero(loop.size), 0.0};
     double coupling = 0.0;
     double answer = 0.0;
     if (loop.truth.wall) {
         coupling = loop.gains.stiffness * xa + loop.gains.damping * va;
-        answer = -(coupling + loop.share * f);
+        answer = -(coupling + to_proxy);
     } else {
         const double mp = loop.truth.proxy_mass;
-        const double pull = loop.gains.stiffness * (xa - z(2)) + loop.gains.damping * va + loop.share * f;
+        const double pull = loop.gains.stiffness * (xa - z(2)) + loop.gains.damping * va + to_proxy;
         const double yield = loop.gains.stiffness * t + loop.gains.damping;
         const double vp = (z(3) + t / mp * pull) / (1.0 + t / mp * yield);
         out.state(2) = z(2) + t * vp;
         out.state(3) = vp;
         coupling = loop.gains.stiffness * (xa - out.state(2)) + loop.gains.damping * (va - vp);
     }
-    out.force = -coupling + loop.share * answer;
+    out.force = -coupling + (loop.transparent ? loop.feed * f : loop.share * answer);
     const double acting = loop.delay > 0 ? z(7) : out.force;
     const Vec2 handle = loop.motion * z.head<2>() + loop.push * (acting + hand);
     out.state.head<2>() = handle;
@@ -239,6 +256,17 @@ bool holds(const LoopFigures& figures, const CouplingDesign& design) {
     return true;
 }
 
+// the most that may be hidden, at most what is asked
+CouplingDesign hide(const LoopFigures& figures, CouplingDesign design) {
+    if (!figures.four_channel || !figures.transparent)
+        return design;
+    for (design.hidden = figures.hidden; design.hidden > 0.0; design.hidden -= 0.05)
+        if (holds(figures, design))
+            return design;
+    design.hidden = 0.0;
+    return design;
+}
+
 } // namespace
 
 SolverGains solver_gains(double stiffness, double damping, double mobility, double step) {
@@ -296,7 +324,7 @@ CouplingDesign design_coupling(const LoopFigures& wanted) {
     for (int doubled = 0; doubled < 20; ++doubled, noise *= 2.0)
         for (const Candidate& candidate : candidates)
             if (candidate.design.noise <= noise && holds(figures, candidate.design))
-                return candidate.design;
+                return hide(figures, candidate.design);
     return {};
 }
 

@@ -33,6 +33,10 @@ double pass_fraction(const Wrench& command, const GateOutput& gate, double last)
 // a handle is moved on by its velocity for so long, s; beyond that the velocity says too little
 constexpr double k_most_ahead = 0.003;
 
+// hidden inertia fades out and in, s
+constexpr double k_reveal_time = 0.004;
+constexpr double k_hide_time = 0.1;
+
 // of a spring that gives at most `most`
 double spring_energy(const Vec3& stiffness, const Vec3& stretch, const Wrench& most) {
     double energy = 0.0;
@@ -71,6 +75,7 @@ std::vector<FigureError> validate(const SessionSettings& s) {
                 "0 chooses it.");
     check.range("observer.noise", s.observer.noise, 0.001, 10.0, "N", "0.05 is the default.");
     check.range("observer.mass_error", s.observer.mass_error, 0.0, 0.5, "", "0.25 is the default.");
+    check.range("hidden_inertia", s.hidden_inertia, 0.0, 0.95, "", "0 leaves all of it to the hand.");
     check.range("device_delay", s.device_delay, 0.0, 1.0, "s", "Most devices add less than 0.001 s.");
     return check.take();
 }
@@ -112,6 +117,7 @@ Session::Session(const SessionSettings& settings, const Model& model, const Outp
 void Session::choose_gains() {
     gains_ = settings_.gains;
     const bool chosen = !gains_.stiffness.isZero(0.0) || !gains_.damping.isZero(0.0);
+    hidden_.setConstant(settings_.hidden_inertia);
     if (settings_.observer.enabled && observe(chosen))
         return;
     if (!chosen)
@@ -128,6 +134,8 @@ bool Session::observe(bool gains_chosen) {
     figures.delay = wanted.delay;
     figures.mass_error = wanted.mass_error;
     figures.four_channel = settings_.coupling == Coupling::four_channel;
+    figures.transparent = settings_.hand_force == HandForce::transparent;
+    figures.hidden = settings_.hidden_inertia;
     figures.mass = lightest_mass(mass);
     figures.quantum = 2.0 * settings_.reading_error.head<2>().maxCoeff();
     figures.noise = wanted.noise;
@@ -140,6 +148,7 @@ bool Session::observe(bool gains_chosen) {
     const CouplingDesign rotation = design_coupling(figures);
     if (translation.stiffness == 0.0 || rotation.stiffness == 0.0)
         return false;
+    hidden_ = Vec3(translation.hidden, translation.hidden, rotation.hidden);
     if (!gains_chosen) {
         const double scale = settings_.mapping.scale * settings_.mapping.scale;
         gains_.stiffness =
@@ -303,6 +312,27 @@ void Session::try_to_arm(Fault device) {
     passivity_.reset();
 }
 
+bool Session::is_transparent() const {
+    return settings_.hand_force == HandForce::transparent && feeds_forward();
+}
+
+// Hidden inertia fades out at once when something is touched, and comes back slowly. What the device is fed
+// moves it while it acts, and the coupling is solved for the end of the step with that in it.
+void Session::share(HandInput& hand) {
+    const double h = settings_.step;
+    const bool touches = output_.contacts > 0 || output_.colliding > 0;
+    hiding_ = std::clamp(hiding_ + (touches ? -h / k_reveal_time : h / k_hide_time), 0.0, 1.0);
+    mobility_ = grip_mobility(*model_, *data_);
+    const Vec3 bias = free_grip_acceleration(*model_, *data_);
+    shared_ = share_motion(mobility_, bias, device_mass_, visible_mass(device_mass_, hiding_ * hidden_),
+                           hand_force_);
+    hand.force = hand.share * shared_.to_proxy;
+    const Vec3 moved = observer_ ? Vec3(device_mass_.inverse() * (hand.share * shared_.to_device))
+                                 : Vec3(shared_.acceleration);
+    hand.target += 0.5 * h * h * moved;
+    hand.target_velocity += h * moved;
+}
+
 void Session::run_model() {
     const double h = settings_.step;
     if (settings_.coupling == Coupling::direct && !model_->tool.articulated) {
@@ -336,7 +366,9 @@ void Session::run_model() {
     hand.share = share_ * grasp_;
     felt_mass_ = settings_.hand_force == HandForce::paper ? truncated_mass(mobility_, device_mass_)
                                                           : combined_mass(mobility_, device_mass_);
-    if (feeds_forward())
+    if (is_transparent())
+        share(hand);
+    else if (feeds_forward())
         hand.force = hand.share * (settings_.hand_force == HandForce::paper
                                        ? hand_force_
                                        : Wrench(felt_mass_ * mobility_ * hand_force_));
@@ -352,7 +384,9 @@ Wrench Session::command() {
     if (settings_.coupling == Coupling::direct)
         return grasp_ * output_.environment;
     Wrench force = -output_.full_coupling;
-    if (feeds_forward())
+    if (is_transparent())
+        force += shared_.to_device;
+    else if (feeds_forward())
         force += felt_mass_ * (settings_.hand_force == HandForce::paper
                                    ? output_.grip_acceleration
                                    : Vec3(output_.grip_acceleration + output_.grip_bias));

@@ -38,6 +38,8 @@ struct ObservedToolOptions {
     /// Mass that the controller assumes over the true one.
     double mass_ratio{1.0};
     Coupling coupling{Coupling::four_channel};
+    HandForce hand_force{HandForce::combined};
+    double hidden_inertia{0.0};
     Integrator integrator{Integrator::linearly_implicit};
     double encoder{10e-6};
     int delay_steps{1};
@@ -72,6 +74,8 @@ struct ObservedTool {
         SessionSettings s;
         s.step = 1.0 / o.rate_hz;
         s.coupling = o.coupling;
+        s.hand_force = o.hand_force;
+        s.hidden_inertia = o.hidden_inertia;
         s.gains = o.gains;
         s.reading_error = Vec3(0.5 * o.encoder, 0.5 * o.encoder, 5.0 * o.encoder);
         s.observer.enabled = o.observer;

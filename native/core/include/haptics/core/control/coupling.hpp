@@ -24,6 +24,10 @@ enum class HandForce : std::uint8_t {
     /// proxies
     /// much heavier than the device. For comparison.
     paper,
+    /// Acceleration feed-forward (shared_motion.cpp): in free motion device and proxy are given what makes
+    /// them accelerate alike, and part of the device's inertia can be hidden; contact forces come through the
+    /// coupling. Needs a measured or observed hand force and `four_channel`.
+    transparent,
 };
 
 /// Spring and damper between handle and grip, per freedom.

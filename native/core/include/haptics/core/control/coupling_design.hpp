@@ -17,6 +17,10 @@ struct LoopFigures {
     /// True: forces are fed forward both ways, with proxies between the two masses, as multiples of the
     /// handle's.
     bool four_channel{false};
+    /// With four_channel: acceleration feed-forward (shared_motion.hpp) in place of the S form, and the most
+    /// of the device's mass to hide in free motion, 0 to 0.95.
+    bool transparent{false};
+    double hidden{0.0};
     double lightest_proxy{0.05};
     double heaviest_proxy{20.0};
     /// Stiffness and damping of hands that hold on: from none to these.
@@ -32,6 +36,7 @@ struct CouplingDesign {
     double damping{0.0};   ///< N s/m
     double bandwidth{0.0}; ///< of the observer, rad/s
     double noise{0.0};     ///< N, caused by the quantum
+    double hidden{0.0};    ///< part of the device's mass that is hidden in free motion
     /// |hand force / handle motion| against a hard wall at 5 and 30 Hz, N/m.
     double stiffness_5_hz{0.0};
     double stiffness_30_hz{0.0};

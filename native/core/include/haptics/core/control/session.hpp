@@ -8,6 +8,7 @@
 #include <haptics/core/control/impulse_channel.hpp>
 #include <haptics/core/control/mapping.hpp>
 #include <haptics/core/control/report.hpp>
+#include <haptics/core/control/shared_motion.hpp>
 #include <haptics/core/local_model/local_model.hpp>
 #include <haptics/core/safety/energy_ledger.hpp>
 #include <haptics/core/safety/output_gate.hpp>
@@ -42,6 +43,9 @@ struct SessionSettings {
     double step{0.001};
     Coupling coupling{Coupling::four_channel};
     HandForce hand_force{HandForce::combined};
+    /// Most of the device's inertia that `transparent` hides from the hand in free motion, 0 to 0.95. With an
+    /// observer less is hidden where the computed loop does not bear it.
+    double hidden_inertia{0.0};
     Mapping mapping;
     /// Coupling gains; all zero chooses default_gains.
     CouplingGains gains;
@@ -113,6 +117,8 @@ class Session {
     [[nodiscard]] const SessionSettings& settings() const { return settings_; }
     [[nodiscard]] const Model& model() const { return *model_; }
     [[nodiscard]] const CouplingGains& gains() const { return gains_; }
+    /// Part of the device's inertia that is hidden in free motion, per freedom (`transparent`).
+    [[nodiscard]] const Vec3& hidden_inertia() const { return hidden_; }
     [[nodiscard]] const EnergyLedger& ledger() const { return ledger_; }
     [[nodiscard]] const PassivityController& passivity() const { return passivity_; }
     /// Null while none is enabled, and when no coupling holds with the device's figures: the loop then does
@@ -138,6 +144,8 @@ class Session {
     void follow_handle();
     [[nodiscard]] Fault device_faults() const;
     void try_to_arm(Fault device);
+    [[nodiscard]] bool is_transparent() const;
+    void share(HandInput& hand);
     void run_model();
     [[nodiscard]] Wrench command();
     void write_report(const GateOutput& gate, const Wrench& command);
@@ -170,6 +178,11 @@ class Session {
     /// Grip to be taken once the present one has been let go.
     Grip next_grip_;
     bool regrab_{false};
+    /// Acceleration feed-forward of the step (`transparent`).
+    SharedMotion shared_;
+    /// Most of the device's inertia that is hidden, per freedom; how much of that is hidden now, 0..1.
+    Vec3 hidden_{0.0, 0.0, 0.0};
+    double hiding_{0.0};
     /// Part of the last command that the gate let through.
     double share_{1.0};
     bool held_{false};

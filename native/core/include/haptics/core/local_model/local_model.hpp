@@ -118,6 +118,11 @@ void step(const Model& model, Data& data, const HandInput& hand, double dt, Step
 /// J_h D^-1 J_h^T at the grip for the present pose.
 Mat3 grip_mobility(const Model& model, Data& data);
 
+/// Acceleration of the grip that neither hand nor contacts nor joints' springs, limits and friction cause, at
+/// the present state: J_h D^-1 (gravity - C) + J_h' q', m/s^2, m/s^2, rad/s^2. After grip_mobility() for the
+/// same state. Rows of freedoms that are not held are zero.
+Vec3 free_grip_acceleration(const Model& model, Data& data);
+
 /// Contact forces of a rigid tool that is put at `pose` with `velocity` and has no motion of its own: direct
 /// rendering, the baseline.
 void step_direct(const Model& model, Data& data, const Pose& pose, const Twist& velocity, double dt,

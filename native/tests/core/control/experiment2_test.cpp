@@ -1,0 +1,127 @@
+// Experiment 2: how closely the handle follows the linkage, and how much the linkage with a device moves like
+// the linkage without one.
+// HAPTICS_EXPERIMENT2=<folder> writes table.md, and free.csv and contact.csv with every step of a swift run.
+
+#include <haptics/shared/experiment2.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iomanip>
+#include <string>
+
+using namespace haptics;
+using shared::Experiment2Options;
+using shared::Experiment2Outcome;
+using shared::run_experiment2;
+
+namespace {
+
+Experiment2Options slowly() {
+    Experiment2Options o;
+    o.frequency = 0.25;
+    o.speed = 0.9 / 8.0;
+    o.seconds = 4.0;
+    return o;
+}
+
+Experiment2Options observed(Experiment2Options o, double ratio) {
+    o.observer = true;
+    o.mass_ratio = ratio;
+    return o;
+}
+
+// force of the contacts with `body`, N
+double force_of(const HapticReport& report, std::uint64_t body) {
+    Vec2 sum = Vec2::Zero();
+    for (int i = 0; i < report.contact_count; ++i) {
+        const ContactReport& c = report.contact_list[static_cast<std::size_t>(i)];
+        if (c.body == body)
+            sum += c.normal_force * c.normal;
+    }
+    return sum.norm();
+}
+
+Experiment2Outcome write_run(const std::string& path, const Experiment2Options& o) {
+    std::ofstream out(path);
+    out << "t_s,device_x_m,device_y_m,proxy_x_m,proxy_y_m,error_m,wall_force_n,object_force_n\n"
+        << std::setprecision(9);
+    return run_experiment2(o, [&](const HapticReport& r, const Pose& handle, double error) {
+        out << r.time << ',' << handle.x() << ',' << handle.y() << ',' << r.grip.x() << ',' << r.grip.y()
+            << ',' << error << ',' << force_of(r, 100) << ',' << force_of(r, 200) << '\n';
+    });
+}
+
+void write_row(std::ostream& out, const char* form, Experiment2Options o) {
+    const Experiment2Outcome r = run_experiment2(o);
+    out << "| " << std::setprecision(2) << o.frequency << " | " << form << " | "
+        << (o.observer ? "observed" : "measured") << " | " << (o.obstacles ? "yes" : "no") << " | "
+        << o.mass_ratio << " | " << o.friction << " | " << std::setprecision(0) << r.stiffness << " | "
+        << std::setprecision(2) << (o.hand_force == HandForce::transparent ? r.hidden.x() : 0.0) << " | "
+        << std::setprecision(1) << r.peak * 1e6 << " | " << r.mean * 1e6 << " | " << r.motion * 1e6 << " |\n";
+}
+
+void write_table(const std::string& path) {
+    std::ofstream out(path);
+    out << "| swing Hz | hand force | known by | obstacles | mass assumed / true | friction N s/m | coupling "
+           "N/m | hidden | peak µm | RMS µm | motion error RMS µm |\n"
+           "|---|---|---|---|---|---|---|---|---|---|---|\n"
+        << std::fixed;
+    for (Experiment2Options o : {Experiment2Options{}, slowly()})
+        for (const HandForce form : {HandForce::combined, HandForce::transparent}) {
+            o.hand_force = form;
+            const char* name = form == HandForce::combined ? "combined" : "transparent";
+            write_row(out, name, o);
+            Experiment2Options known = observed(o, 1.0);
+            known.mass_error = 0.0;
+            write_row(out, name, known);
+            for (const double ratio : {0.75, 1.0, 1.25})
+                write_row(out, name, observed(o, ratio));
+            if (o.frequency < 1.0)
+                continue;
+            known.friction = 1.0;
+            write_row(out, name, known);
+            known = observed(o, 1.0);
+            known.obstacles = true;
+            write_row(out, name, known);
+        }
+}
+
+} // namespace
+
+TEST_SUITE("experiment 2") {
+    TEST_CASE("device known exactly, swift motion: the handle follows within 0.15 mm, the linkage moves as "
+              "without a device within 0.5 mm") {
+        if (const char* folder = std::getenv("HAPTICS_EXPERIMENT2")) {
+            write_table(std::string(folder) + "/table.md");
+            write_run(std::string(folder) + "/free.csv", observed({}, 1.0));
+            Experiment2Options touching = observed({}, 1.0);
+            touching.obstacles = true;
+            write_run(std::string(folder) + "/contact.csv", touching);
+        }
+        const Experiment2Outcome swift = run_experiment2({});
+        CHECK(swift.faults == Fault::none);
+        CHECK(swift.fastest > 0.85);
+        CHECK(swift.peak < 0.15e-3);
+        CHECK(swift.motion < 0.5e-3);
+        // the S form alone leaves the difference to the coupling
+        Experiment2Options combined;
+        combined.hand_force = HandForce::combined;
+        CHECK(run_experiment2(combined).peak > 0.3e-3);
+    }
+
+    TEST_CASE("observed handle, device mass a quarter off: the handle follows within 0.15 mm, slowly within "
+              "20 um") {
+        for (const double ratio : {0.75, 1.0, 1.25}) {
+            CAPTURE(ratio);
+            const Experiment2Outcome swift = run_experiment2(observed({}, ratio));
+            CHECK(swift.faults == Fault::none);
+            CHECK(swift.peak < 0.15e-3);
+            const Experiment2Outcome slow = run_experiment2(observed(slowly(), ratio));
+            CHECK(slow.faults == Fault::none);
+            CHECK(slow.peak < 20e-6);
+        }
+        CHECK(run_experiment2(slowly()).peak < 20e-6);
+    }
+}
