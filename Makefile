@@ -1,7 +1,7 @@
 # Thin: every command is a script in tools/ or a CMake preset.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help demo test editor run build bench experiment1 latency sanitizers lint format clean
+.PHONY: help demo test editor run build bench experiment1 experiment2 latency sanitizers lint format clean
 
 PRESET ?= release
 OUT ?= build/run
@@ -29,6 +29,9 @@ build: ## the native library and tests (PRESET=release|debug|asan|tsan|clang)
 
 experiment1: ## experiment 1 of the paper: CSV, picture and table in build/experiment1
 	@tools/run/experiment1
+
+experiment2: ## experiment 2 of the paper: CSV, picture and table in build/experiment2
+	@tools/run/experiment2
 
 bench: ## the benchmarks (ARGS="--benchmark_filter=…"); JSON in build/bench.json
 	@tools/run/bench $(ARGS)

@@ -15,8 +15,8 @@
 // Four channels (coupling.cpp): with a = m/(m + m_proxy) the proxy gets a f besides F, the wall answers F + a
 // f, and the handle gets a times that.
 //
-// Acceleration feed-forward (shared_motion.cpp): with the visible mass m' (m against a wall) the proxy gets L =
-// f m_proxy/(m_proxy + m'), the handle m L/m_proxy - f, which is known before the coupling is solved and so
+// Acceleration feed-forward (shared_motion.cpp): with the visible mass m' (m against a wall) the proxy gets L
+// = f m_proxy/(m_proxy + m'), the handle m L/m_proxy - f, which is known before the coupling is solved and so
 // moves x_end too. Coupling and observer are chosen with nothing hidden; then the most is hidden, by steps of
 // 0.05, with which the same loops stay stable.
 //
@@ -26,6 +26,7 @@
 // 30 Hz. Noise is that of a white reading error of variance q^2/12: its sum over the impulse response.
 
 #include <haptics/core/control/coupling_design.hpp>
+#include <haptics/core/control/shared_motion.hpp>
 #include <haptics/core/types.hpp>
 
 #include <algorithm>
@@ -33,6 +34,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <span>
 #include <vector>
 
 namespace haptics {
@@ -61,8 +63,8 @@ struct Loop {
     // truth
     LoopCase truth;
     bool transparent;
-    double lead;     // L / f
-    double feed;     // of the handle, over f
+    double lead; // L / f
+    double feed; // of the handle, over f
     // handle over one step with a held force: exact for mass, spring and damper
     Mat2 motion;
     Vec2 push;
@@ -102,7 +104,9 @@ Loop make_loop(const LoopFigures& figures, const CouplingDesign& design, const L
     loop.truth = truth;
     loop.transparent = figures.four_channel && figures.transparent;
     loop.share = figures.four_channel ? figures.mass / (figures.mass + truth.proxy_mass) : 0.0;
-    const double visible = figures.mass * (truth.wall ? 1.0 : 1.0 - design.hidden);
+    const double visible = truth.wall ? figures.mass
+                                      : figures.mass * visible_part(design.hidden, figures.hidden,
+                                                                    truth.proxy_mass / figures.mass);
     loop.lead = truth.proxy_mass / (truth.proxy_mass + visible);
     loop.feed = figures.mass / (truth.proxy_mass + visible) - 1.0;
     solve_handle(loop);
@@ -228,7 +232,10 @@ double stiffness_at(const Loop& loop, double frequency) {
 }
 
 bool holds(const LoopFigures& figures, const CouplingDesign& design) {
-    const std::array<double, 3> proxies{figures.lightest_proxy, 1.0, figures.heaviest_proxy};
+    // the fourth is where hiding meets its most
+    const std::array<double, 4> proxies{figures.lightest_proxy, 1.0, figures.heaviest_proxy,
+                                        std::max(figures.lightest_proxy, figures.hidden - design.hidden)};
+    const std::size_t asked = figures.transparent && figures.hidden > 0.0 ? 4 : 3;
     for (const double wide : {k_margin, 1.0}) {
         for (const double error : {-figures.mass_error, 0.0, figures.mass_error}) {
             if (wide > 1.0 && error == 0.0)
@@ -239,7 +246,7 @@ bool holds(const LoopFigures& figures, const CouplingDesign& design) {
                 truth.true_mass = figures.mass / (1.0 + std::max(wide * error, -0.9));
                 truth.hand_stiffness = hold * figures.hand_stiffness;
                 truth.hand_damping = hold * figures.hand_damping;
-                for (const double ratio : proxies) {
+                for (const double ratio : std::span(proxies).first(asked)) {
                     truth.proxy_mass = ratio * figures.mass;
                     truth.wall = true;
                     const double limit = wide > 1.0 ? 1.0 - 1e-9 : std::exp(-k_slowest * figures.step);

@@ -117,7 +117,7 @@ Session::Session(const SessionSettings& settings, const Model& model, const Outp
 void Session::choose_gains() {
     gains_ = settings_.gains;
     const bool chosen = !gains_.stiffness.isZero(0.0) || !gains_.damping.isZero(0.0);
-    hidden_.setConstant(settings_.hidden_inertia);
+    hidden_ = {Vec3::Constant(settings_.hidden_inertia), settings_.hidden_inertia};
     if (settings_.observer.enabled && observe(chosen))
         return;
     if (!chosen)
@@ -148,7 +148,7 @@ bool Session::observe(bool gains_chosen) {
     const CouplingDesign rotation = design_coupling(figures);
     if (translation.stiffness == 0.0 || rotation.stiffness == 0.0)
         return false;
-    hidden_ = Vec3(translation.hidden, translation.hidden, rotation.hidden);
+    hidden_.alone = Vec3(translation.hidden, translation.hidden, rotation.hidden);
     if (!gains_chosen) {
         const double scale = settings_.mapping.scale * settings_.mapping.scale;
         gains_.stiffness =
@@ -225,7 +225,8 @@ Mat3 Session::loop_mobility() const {
 double Session::stored_energy() const {
     const double force = gate_.limits().max_force * settings_.mapping.scale;
     const Vec3 stretch = handle_ + grab_offset_ - grip_pose(data_->grip, data_->pose);
-    return output_.stored_energy +
+    // what moves the hidden part of the device's inertia comes from the controller, and back to it
+    return output_.stored_energy - 0.5 * grasp_ * handle_velocity_.dot(hidden_mass_ * handle_velocity_) +
            grasp_ * spring_energy(gains_.stiffness, stretch, Wrench(force, force, gate_.limits().max_torque));
 }
 
@@ -324,8 +325,9 @@ void Session::share(HandInput& hand) {
     hiding_ = std::clamp(hiding_ + (touches ? -h / k_reveal_time : h / k_hide_time), 0.0, 1.0);
     mobility_ = grip_mobility(*model_, *data_);
     const Vec3 bias = free_grip_acceleration(*model_, *data_);
-    shared_ = share_motion(mobility_, bias, device_mass_, visible_mass(device_mass_, hiding_ * hidden_),
-                           hand_force_);
+    const Mat3 visible = visible_mass(device_mass_, mobility_, hidden_, hiding_);
+    hidden_mass_ = device_mass_ - visible;
+    shared_ = share_motion(mobility_, bias, device_mass_, visible, hand_force_);
     hand.force = hand.share * shared_.to_proxy;
     const Vec3 moved = observer_ ? Vec3(device_mass_.inverse() * (hand.share * shared_.to_device))
                                  : Vec3(shared_.acceleration);
@@ -484,6 +486,7 @@ void Session::write_report(const GateOutput& gate, const Wrench& command) {
             continue;
         ContactReport& c = r.contact_list[static_cast<std::size_t>(r.contact_count++)];
         c.body = data_->neighbors.body[static_cast<std::size_t>(p.body_b - data_->tool.body_count)].id;
+        c.link = p.body_a;
         c.state = p.memory.state;
         c.normal = p.normal;
         c.normal_force = p.memory.normal_force;

@@ -12,8 +12,11 @@
 // whatever the estimates of F_h, b, P and M_d are; the pair obeys Newton's third law like a spring between
 // them. A hidden part adds u + L = (M_d - M') a, which drives the device by an estimate of its own
 // acceleration: with M_d assumed r times too large and the observer's F_h = m a - u, the estimate returns to
-// itself with gain (r - 1)(g - 1), g = M_d a / F_h <= 1/(1 - hidden). So what may be hidden depends on how
-// well the mass is known: coupling_design.cpp looks for the most that its computed loop bears.
+// itself with gain (r - 1)(g - 1), g = M_d a / F_h = 1/(v + p), where v is the visible part of the device's
+// mass and p the proxy's mass over the device's. So what may be hidden depends on how well the mass is known
+// and on the proxy: coupling_design.cpp looks for the most that its computed loop bears beside a proxy
+// without mass, v + p >= 1 - alone. A proxy with mass lets more be hidden: v = max(1 - most, 1 - alone - p).
+// For matrices that holds along the principal directions of L' P L (M_d = L L'), whose values are 1/p.
 //
 // Contacts stay out of b. Fed into a, a contact force would return through L within the same step (the proxy
 // answers L at once), with gain M_d P / (1 + M' P), that is up to 1/(1 - hidden), a loop without delay. So
@@ -22,7 +25,10 @@
 
 #include <haptics/core/control/shared_motion.hpp>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
 
 namespace haptics {
 
@@ -36,9 +42,25 @@ SharedMotion share_motion(const Mat3& mobility, const Vec3& free_acceleration, c
     return shared;
 }
 
-Mat3 visible_mass(const Mat3& device_mass, const Vec3& hidden) {
-    const Vec3 root = (Vec3::Ones() - hidden.cwiseMax(0.0).cwiseMin(1.0)).cwiseSqrt();
-    return root.asDiagonal() * device_mass * root.asDiagonal();
+double visible_part(double alone, double most, double r) {
+    return std::clamp(1.0 - alone - r, 1.0 - most, 1.0);
+}
+
+Mat3 visible_mass(const Mat3& device_mass, const Mat3& mobility, const HiddenInertia& hidden, double amount) {
+    if (amount <= 0.0 || hidden.most <= 0.0)
+        return device_mass;
+    const Mat3 root = device_mass.llt().matrixL();
+    Eigen::SelfAdjointEigenSolver<Mat3> directions;
+    directions.computeDirect(root.transpose() * mobility * root);
+    Vec3 part;
+    for (int i = 0; i < 3; ++i) {
+        const Vec3 along = directions.eigenvectors().col(i).cwiseAbs2();
+        const double inverse = directions.eigenvalues()(i);
+        const double r = inverse > 1e-9 ? 1.0 / inverse : 1e9;
+        part(i) = 1.0 - amount * (1.0 - visible_part(along.dot(hidden.alone), hidden.most, r));
+    }
+    const Mat3 turned = root * directions.eigenvectors();
+    return turned * part.asDiagonal() * turned.transpose();
 }
 
 } // namespace haptics

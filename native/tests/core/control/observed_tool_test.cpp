@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <cstdlib>
@@ -21,6 +22,25 @@ using shared::ObservedTool;
 using shared::ObservedToolOptions;
 
 namespace {
+
+struct Channels {
+    const char* name;
+    Coupling coupling;
+    HandForce hand_force;
+};
+constexpr std::array<Channels, 3> k_channels{{
+    {"virtual coupling", Coupling::virtual_coupling, HandForce::combined},
+    {"four channels", Coupling::four_channel, HandForce::combined},
+    {"transparent", Coupling::four_channel, HandForce::transparent},
+}};
+
+ObservedToolOptions with(const Channels& channels) {
+    ObservedToolOptions o;
+    o.coupling = channels.coupling;
+    o.hand_force = channels.hand_force;
+    o.hidden_inertia = channels.hand_force == HandForce::transparent ? 0.9 : 0.0;
+    return o;
+}
 
 struct Rest {
     double contact{0.0};
@@ -137,18 +157,17 @@ void write_stiffness_table(const char* path) {
 TEST_SUITE("observed tool") {
     TEST_CASE("a push on the wall is given back within 1 %, for tools of 0.05 to 20 device masses, with the "
               "device's mass a quarter off") {
-        for (const Coupling coupling : {Coupling::virtual_coupling, Coupling::four_channel})
+        for (const Channels& channels : k_channels)
             for (const double rate : {500.0, 1000.0})
                 for (const double ratio : {0.75, 1.25})
                     for (const double tool : {0.05, 1.0, 20.0}) {
-                        ObservedToolOptions o;
-                        o.coupling = coupling;
+                        ObservedToolOptions o = with(channels);
                         o.rate_hz = rate;
                         o.mass_ratio = ratio;
                         o.tool_mass = 0.3 * tool;
                         ObservedTool held(o);
                         const Rest rest = settle(held, rate, 4.0);
-                        CAPTURE(static_cast<int>(coupling));
+                        CAPTURE(std::string(channels.name));
                         CAPTURE(rate);
                         CAPTURE(ratio);
                         CAPTURE(tool);
@@ -161,11 +180,10 @@ TEST_SUITE("observed tool") {
     }
 
     TEST_CASE("a held weight is felt within 2 %, with the device's mass a quarter off") {
-        for (const Coupling coupling : {Coupling::virtual_coupling, Coupling::four_channel})
+        for (const Channels& channels : k_channels)
             for (const double ratio : {0.75, 1.25})
                 for (const double tool : {0.05, 1.0, 20.0}) {
-                    ObservedToolOptions o;
-                    o.coupling = coupling;
+                    ObservedToolOptions o = with(channels);
                     o.mass_ratio = ratio;
                     o.tool_mass = 0.3 * tool;
                     o.distance = 0.03;
@@ -175,7 +193,7 @@ TEST_SUITE("observed tool") {
                     o.hand.stiffness = 1000.0;
                     ObservedTool held(o);
                     const Rest rest = settle(held, o.rate_hz, 4.0);
-                    CAPTURE(static_cast<int>(coupling));
+                    CAPTURE(std::string(channels.name));
                     CAPTURE(ratio);
                     CAPTURE(tool);
                     CHECK(rest.force == doctest::Approx(o.tool_mass * o.gravity.y()).epsilon(0.02));
@@ -217,9 +235,8 @@ TEST_SUITE("observed tool") {
     }
 
     TEST_CASE("a free tool as heavy as the device weighs less than both together, and moves without clicks") {
-        for (const Coupling coupling : {Coupling::virtual_coupling, Coupling::four_channel}) {
-            ObservedToolOptions o;
-            o.coupling = coupling;
+        for (const Channels& channels : k_channels) {
+            ObservedToolOptions o = with(channels);
             o.distance = 0.03;
             o.hand = pushing_hand(Wrench(0.3, 0.0, 0.0), 0.2);
             ObservedTool tool(o);
@@ -234,10 +251,12 @@ TEST_SUITE("observed tool") {
                     early = tool.device->true_twist().x();
             }
             const double felt = 0.3 * 0.1 / (tool.device->true_twist().x() - early);
-            MESSAGE(std::string(coupling == Coupling::four_channel ? "four channels" : "virtual coupling")
+            MESSAGE(std::string(channels.name)
                     << ": felt mass " << felt << " kg, largest step of the force " << click << " N");
             CHECK(felt < 0.62);
             CHECK(felt > 0.3);
+            if (channels.hand_force == HandForce::transparent)
+                CHECK(felt < 0.45);
             CHECK(click < 0.1);
         }
     }

@@ -218,7 +218,7 @@ struct Experiment2Outcome {
     double largest_contact{0.0};
     double energy{0.0};
     Fault faults{Fault::none};
-    Vec3 hidden{0.0, 0.0, 0.0};
+    HiddenInertia hidden;
     double stiffness{0.0};
 };
 

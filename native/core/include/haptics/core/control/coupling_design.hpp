@@ -36,7 +36,7 @@ struct CouplingDesign {
     double damping{0.0};   ///< N s/m
     double bandwidth{0.0}; ///< of the observer, rad/s
     double noise{0.0};     ///< N, caused by the quantum
-    double hidden{0.0};    ///< part of the device's mass that is hidden in free motion
+    double hidden{0.0};    ///< of the device's mass, beside a proxy without mass
     /// |hand force / handle motion| against a hard wall at 5 and 30 Hz, N/m.
     double stiffness_5_hz{0.0};
     double stiffness_30_hz{0.0};

@@ -15,6 +15,8 @@ namespace haptics {
 struct ContactReport {
     /// Body::id of the neighbor.
     std::uint64_t body{0};
+    /// Link of the tool that touches it, 0 for a rigid tool.
+    std::int32_t link{0};
     ContactState state{ContactState::none};
     /// Middle of the patch and normal out of the neighbor, scene axes.
     Vec2 position{0.0, 0.0};

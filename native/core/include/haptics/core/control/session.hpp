@@ -117,8 +117,8 @@ class Session {
     [[nodiscard]] const SessionSettings& settings() const { return settings_; }
     [[nodiscard]] const Model& model() const { return *model_; }
     [[nodiscard]] const CouplingGains& gains() const { return gains_; }
-    /// Part of the device's inertia that is hidden in free motion, per freedom (`transparent`).
-    [[nodiscard]] const Vec3& hidden_inertia() const { return hidden_; }
+    /// Part of the device's inertia that is hidden in free motion (`transparent`).
+    [[nodiscard]] const HiddenInertia& hidden_inertia() const { return hidden_; }
     [[nodiscard]] const EnergyLedger& ledger() const { return ledger_; }
     [[nodiscard]] const PassivityController& passivity() const { return passivity_; }
     /// Null while none is enabled, and when no coupling holds with the device's figures: the loop then does
@@ -180,9 +180,11 @@ class Session {
     bool regrab_{false};
     /// Acceleration feed-forward of the step (`transparent`).
     SharedMotion shared_;
-    /// Most of the device's inertia that is hidden, per freedom; how much of that is hidden now, 0..1.
-    Vec3 hidden_{0.0, 0.0, 0.0};
+    /// Most of the device's inertia that is hidden; how much of that is hidden now, 0..1.
+    HiddenInertia hidden_;
     double hiding_{0.0};
+    /// Inertia that the device keeps from the hand in this step.
+    Mat3 hidden_mass_{Mat3::Zero()};
     /// Part of the last command that the gate let through.
     double share_{1.0};
     bool held_{false};

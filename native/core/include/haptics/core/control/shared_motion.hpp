@@ -18,8 +18,19 @@ struct SharedMotion {
 SharedMotion share_motion(const Mat3& mobility, const Vec3& free_acceleration, const Mat3& device_mass,
                           const Mat3& visible_mass, const Wrench& hand_force);
 
-/// The device's mass with the parts `hidden` of it (0..1 per freedom) taken out, as W M W with W = diag(sqrt(1
-/// - hidden)): positive semidefinite for every M that is.
-Mat3 visible_mass(const Mat3& device_mass, const Vec3& hidden);
+/// How much of the device's inertia is hidden, as parts of it, 0..1.
+struct HiddenInertia {
+    /// Beside a proxy without mass, per freedom: what the loop bears.
+    Vec3 alone{0.0, 0.0, 0.0};
+    /// The most, beside a proxy that has mass enough of its own.
+    double most{0.0};
+};
+
+/// The part of the device's mass that the hand is to feel beside a proxy of this mobility, times `amount` of
+/// hiding (0: all of it is felt). Symmetric, positive semidefinite, at most the device's mass.
+Mat3 visible_mass(const Mat3& device_mass, const Mat3& mobility, const HiddenInertia& hidden, double amount);
+
+/// The same for one freedom and a proxy of r times the device's mass: the visible part.
+double visible_part(double alone, double most, double r);
 
 } // namespace haptics
