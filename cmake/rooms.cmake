@@ -53,6 +53,8 @@ function(haptics_room_row target folder uses)
     set(${uses} "${linked}" PARENT_SCOPE)
 endfunction()
 
+set(haptics_precompiled <Eigen/Dense> <algorithm> <array> <atomic> <cmath> <cstdint> <functional> <memory> <span> <string> <vector>)
+
 # haptics_room(TARGET [EXECUTABLE | MODULE | SHARED] [TESTS] [EXCLUDE regex]): the target of a room, from all sources in its folder.
 # A library room without sources yet is headers only; a program or module without sources is left out.
 function(haptics_room target)
@@ -86,12 +88,10 @@ function(haptics_room target)
     target_link_libraries(${target} PUBLIC ${uses} PRIVATE haptics_options)
     if(HAPTICS_PCH AND "haptics_eigen" IN_LIST uses AND NOT room_SHARED)
         # libraries only; each file still includes what it uses, as clang-tidy and the builds without this option need
-        set(headers <Eigen/Dense> <algorithm> <array> <atomic> <cmath> <cstdint> <functional> <memory> <span> <string> <vector>)
         if(room_TESTS)
-            list(APPEND headers <doctest/doctest.h>)
-        endif()
-        if(room_EXECUTABLE OR target STREQUAL "haptics_core")
-            target_precompile_headers(${target} PRIVATE ${headers})
+            target_precompile_headers(${target} REUSE_FROM haptics_tests_headers)
+        elseif(room_EXECUTABLE OR target STREQUAL "haptics_core")
+            target_precompile_headers(${target} PRIVATE ${haptics_precompiled})
         else()
             target_precompile_headers(${target} REUSE_FROM haptics_core)
         endif()

@@ -130,6 +130,9 @@ void HapticRunner::step(const StepTime& time) {
         newest_snapshot_ = newest.value.time;
         seen_snapshot_ = true;
     }
+    const auto placement = placements_.try_read();
+    if (placement.is_new)
+        session_->place(placement.value);
     take_commands();
     watch_scene(time.time());
     if (hook_ != nullptr)

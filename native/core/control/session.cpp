@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace haptics {
 namespace {
@@ -52,12 +53,7 @@ double spring_energy(const Vec3& stiffness, const Vec3& stretch, const Wrench& m
 std::vector<FigureError> validate(const SessionSettings& s) {
     FigureCheck check;
     check.range("rate", s.step > 0.0 ? 1.0 / s.step : 0.0, 250.0, 10000.0, "Hz", "1000 Hz is the default.");
-    check.range("mapping.scale", s.mapping.scale, 0.01, 100.0, "m/m",
-                "1 shows the device's motion at its true size.");
-    check.range("mapping.rotation", s.mapping.rotation, -10.0, 10.0, "rad", "0 is the default.");
-    for (int i = 0; i < 3; ++i)
-        check.range("mapping.offset", s.mapping.offset(i), -100.0, 100.0, "m",
-                    "Keep the workspace near the world node.");
+    check.append(validate(HandPlacement{s.mapping, false, 0.0}));
     for (int i = 0; i < 3; ++i) {
         check.range("coupling.stiffness", s.gains.stiffness(i), 0.0, 1e9, "N/m",
                     "0 chooses it from device mass and rate.");
@@ -99,7 +95,8 @@ Session::Session(const SessionSettings& settings, const Model& model, const Outp
     , device_(device)
     , care_(settings.care, gate, settings.reading_error)
     , velocity_(settings.reading_error, settings.velocity_window)
-    , passivity_(settings.reading_error) {
+    , passivity_(settings.reading_error)
+    , placement_(HandPlacement{settings.mapping, false, 0.0}) {
     reset(*model_, *data_, start);
     arm_wanted_ = settings.arm_at_start;
     mobility_ = grip_mobility(*model_, *data_);
@@ -109,7 +106,7 @@ Session::Session(const SessionSettings& settings, const Model& model, const Outp
     hold(settings_.hold_at_start);
     report_.grip = grip_pose(data_->grip, data_->pose);
     report_.proxy = data_->pose;
-    report_.device = handle_ + grab_offset_;
+    report_.device = target();
     report_.held = held_;
 }
 
@@ -117,6 +114,7 @@ Session::Session(const SessionSettings& settings, const Model& model, const Outp
 void Session::choose_gains() {
     gains_ = settings_.gains;
     const bool chosen = !gains_.stiffness.isZero(0.0) || !gains_.damping.isZero(0.0);
+    gains_follow_scale_ = !chosen;
     hidden_ = {Vec3::Constant(settings_.hidden_inertia), settings_.hidden_inertia};
     if (settings_.observer.enabled && observe(chosen))
         return;
@@ -171,7 +169,8 @@ void Session::hold(bool held) {
 }
 
 void Session::freeze_offset() {
-    grab_offset_ = grip_pose(data_->grip, data_->pose) - handle_;
+    grab_offset_ = grip_pose(data_->grip, data_->pose) - handle_ - turned();
+    parked_ = false;
 }
 
 void Session::grab(const Grip& grip) {
@@ -191,6 +190,54 @@ void Session::grasp() {
         mobility_ = grip_mobility(*model_, *data_);
         hold(true);
     }
+}
+
+// Clutch, mapping and turn (placement.hpp). Parked, the tool is held where it was by the same coupling, of
+// which the hand feels nothing.
+void Session::place_handle() {
+    placement_.advance(output_.full_coupling.head<2>().norm(), settings_.step);
+    if (placement_.rests()) {
+        if (!parked_)
+            park_ = handle_ + grab_offset_;
+        parked_ = true;
+        const double before = settings_.mapping.scale;
+        placement_.remap();
+        settings_.mapping = placement_.mapping();
+        if (gains_follow_scale_) {
+            const double ratio = before / settings_.mapping.scale;
+            gains_.stiffness.head<2>() *= ratio * ratio;
+            gains_.damping.head<2>() *= ratio * ratio;
+        }
+        locate_handle();
+    } else if (parked_) {
+        grab_offset_ = park_ - handle_;
+        parked_ = false;
+    }
+    hand_force_ *= placement_.share();
+}
+
+void Session::place_target(HandInput& hand) const {
+    if (parked_) {
+        hand.target = park_;
+        hand.target_velocity.setZero();
+    }
+    hand.target += turned();
+    hand.target.z() += settings_.step * placement_.turn().rate();
+    hand.target_velocity.z() += placement_.turn().rate();
+}
+
+// What moves the handle's end of the coupling and is not the hand: all of it but the hand's share, and the
+// turn.
+void Session::book_own_work() {
+    source_work_ += output_.source_work;
+    const Pose now = target();
+    const Wrench force = share_ * grasp_ * output_.full_coupling;
+    const double others = (1.0 - placement_.share()) * force.dot(now - last_target_);
+    const double turned = placement_.share() * force.z() * settings_.step * placement_.turn().rate();
+    if (grasp_ > 0.0 && !parked_)
+        source_work_ += others;
+    source_work_ += turned;
+    last_target_ = now;
 }
 
 void Session::arm() {
@@ -224,7 +271,7 @@ Mat3 Session::loop_mobility() const {
 
 double Session::stored_energy() const {
     const double force = gate_.limits().max_force * settings_.mapping.scale;
-    const Vec3 stretch = handle_ + grab_offset_ - grip_pose(data_->grip, data_->pose);
+    const Vec3 stretch = target() - grip_pose(data_->grip, data_->pose);
     // what moves the hidden part of the device's inertia comes from the controller, and back to it
     return output_.stored_energy - 0.5 * grasp_ * handle_velocity_.dot(hidden_mass_ * handle_velocity_) +
            grasp_ * spring_energy(gains_.stiffness, stretch, Wrench(force, force, gate_.limits().max_torque));
@@ -232,12 +279,17 @@ double Session::stored_energy() const {
 
 void Session::read_device() {
     const std::uint64_t last = reading_.sequence;
+    const double last_angle = reading_.pose.z();
     missing_ = !device_.read(reading_);
     fresh_ = !missing_ && (reading_.sequence != last || last == 0);
     // a device that found or lost its zero, or was away, may be anywhere
     const bool homed_anew = !missing_ && reading_.homings != homings_;
     const bool elsewhere = !missing_ && (homed_anew || reading_.homed != gate_.homed() ||
                                          (fresh_ && silent_for_ > settings_.device_patience));
+    // an angle that the device wraps goes on growing here
+    if (!missing_ && !elsewhere && last != 0)
+        reading_.pose.z() =
+            last_angle + std::remainder(reading_.pose.z() - last_angle, 2.0 * std::numbers::pi);
     if (elsewhere) {
         care_.restart();
         if (homed_anew) {
@@ -282,6 +334,11 @@ void Session::follow_handle() {
     // a device that fell silent stands still: the last push of the hand must not carry the tool on and on
     if (observer_ && silent_for_ > settings_.device_patience)
         observer_->reset();
+    locate_handle();
+}
+
+void Session::locate_handle() {
+    const Mapping& map = settings_.mapping;
     if (observer_ && observer_->started()) {
         handle_ = map.to_scene(observer_->pose());
         handle_velocity_ = map.twist_to_scene(observer_->twist());
@@ -338,10 +395,14 @@ void Session::share(HandInput& hand) {
 void Session::run_model() {
     const double h = settings_.step;
     if (settings_.coupling == Coupling::direct && !model_->tool.articulated) {
-        const Pose center = center_pose(data_->grip, handle_ + grab_offset_);
-        Twist velocity = handle_velocity_;
-        const Vec2 arm = center.head<2>() - (handle_ + grab_offset_).head<2>();
-        velocity.head<2>() = velocity_at(handle_velocity_, arm);
+        HandInput at;
+        at.target = handle_ + grab_offset_;
+        at.target_velocity = handle_velocity_;
+        place_target(at);
+        const Pose center = center_pose(data_->grip, at.target);
+        Twist velocity = at.target_velocity;
+        const Vec2 arm = center.head<2>() - at.target.head<2>();
+        velocity.head<2>() = velocity_at(at.target_velocity, arm);
         step_direct(*model_, *data_, center, velocity, h, output_);
         return;
     }
@@ -363,6 +424,7 @@ void Session::run_model() {
             hand.damping(i) = solver.damping;
         }
     }
+    place_target(hand);
     hand.max_force = gate_.limits().max_force * settings_.mapping.scale;
     hand.max_torque = gate_.limits().max_torque;
     hand.share = share_ * grasp_;
@@ -384,7 +446,7 @@ Wrench Session::command() {
         return Wrench::Zero();
     }
     if (settings_.coupling == Coupling::direct)
-        return grasp_ * output_.environment;
+        return grasp_ * placement_.share() * output_.environment;
     Wrench force = -output_.full_coupling;
     if (is_transparent())
         force += shared_.to_device;
@@ -392,10 +454,10 @@ Wrench Session::command() {
         force += felt_mass_ * (settings_.hand_force == HandForce::paper
                                    ? output_.grip_acceleration
                                    : Vec3(output_.grip_acceleration + output_.grip_bias));
-    force *= grasp_;
+    force *= grasp_ * placement_.share();
     if (held_ && !output_.grip_velocity_jump.isZero(0.0))
         impulses_.demand((settings_.hand_force == HandForce::paper ? felt_mass_ : device_mass_) *
-                         output_.grip_velocity_jump);
+                         (placement_.share() * output_.grip_velocity_jump));
     if (output_.contacts == 0 && output_.colliding == 0 && output_.grip_velocity_jump.isZero(0.0))
         impulses_.drop();
     const SafetyLimits& limits = gate_.limits();
@@ -409,14 +471,17 @@ void Session::step() {
     read_device();
     if (fresh_) {
         if (gate_.armed())
-            ledger_.book(reading_.pose, stored_energy(), output_.source_work);
+            ledger_.book(reading_.pose, stored_energy(), source_work_);
+        source_work_ = 0.0;
         force_sum_.setZero();
         force_count_ = 0.0;
     }
     const Mat3 handle_mass = device_.handle_mass(reading_.pose);
     device_mass_ = settings_.mapping.mass_to_scene(handle_mass);
     grasp();
+    place_handle();
     run_model();
+    book_own_work();
     const Wrench force = command();
     // disarmed the compensation is no command either: arming asks for free space
     Wrench wanted = Wrench::Zero();
@@ -447,11 +512,12 @@ void Session::write_report(const GateOutput& gate, const Wrench& command) {
     HapticReport& r = report_;
     r.step = data_->step;
     r.time = data_->time;
-    r.device = handle_ + grab_offset_;
+    r.device = target();
     r.device_velocity = handle_velocity_;
     r.proxy = data_->pose;
     r.grip = grip_pose(data_->grip, data_->pose);
     r.velocity = data_->velocity;
+    r.hand_share = grasp_ * placement_.share();
     r.force = map.wrench_to_scene(gate.applied);
     r.compensation = map.wrench_to_scene(care_.applied());
     r.command = map.wrench_to_scene(command);

@@ -59,6 +59,8 @@ class HapticRunner final : public LoopStep {
 
     /// Owner: false when the queue is full (nothing reads it).
     bool try_send(RunnerCommand command) noexcept { return commands_.try_push(command); }
+    /// Owner: the clutch, mapping and turn wanted from now on.
+    void place(const HandPlacement& placement) noexcept { placements_.try_write(placement); }
 
     /// Owner: the newest report.
     [[nodiscard]] const HapticReport& latest_report() noexcept { return reports_.try_read().value; }
@@ -103,6 +105,7 @@ class HapticRunner final : public LoopStep {
     LatestValue<HapticReport> reports_;
     EventQueue<ContactEvent, 1024> events_;
     EventQueue<RunnerCommand, 64> commands_;
+    LatestValue<HandPlacement> placements_;
     std::unique_ptr<StepRecorder> recorder_;
     std::vector<double> rows_;
     std::size_t most_rows_{0};

@@ -54,6 +54,8 @@ struct HapticReport {
     Pose proxy{0.0, 0.0, 0.0};
     Pose grip{0.0, 0.0, 0.0};
     Twist velocity{0.0, 0.0, 0.0};
+    /// Part of the force that the hand has of the tool: 0 while a clutch leaves the handle free.
+    double hand_share{1.0};
     /// Force that left the output gate for the hand (scene axes), N, N, N m.
     Wrench force{0.0, 0.0, 0.0};
     /// The part of it that holds the device's own weight, friction and inertia.

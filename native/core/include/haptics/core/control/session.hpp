@@ -7,6 +7,7 @@
 #include <haptics/core/control/handle_observer.hpp>
 #include <haptics/core/control/impulse_channel.hpp>
 #include <haptics/core/control/mapping.hpp>
+#include <haptics/core/control/placement.hpp>
 #include <haptics/core/control/report.hpp>
 #include <haptics/core/control/shared_motion.hpp>
 #include <haptics/core/local_model/local_model.hpp>
@@ -95,6 +96,8 @@ class Session {
     /// The hand takes hold of the tool (the offset between handle and grip freezes, so the force starts at
     /// zero) or lets go.
     void hold(bool held);
+    /// What the scene wants of clutch, mapping and turn; takes effect without a jump of the force.
+    void place(const HandPlacement& placement) { placement_.want(placement); }
     /// The hand takes hold elsewhere: at once when nothing is held, else after letting go. A link that the
     /// tool does not have is ignored.
     void grab(const Grip& grip);
@@ -126,7 +129,7 @@ class Session {
     [[nodiscard]] const HandleObserver* observer() const { return observer_ ? &*observer_ : nullptr; }
     /// Handle pose at which the grip would be at `grip` (device frame): where a pointing hand has to go.
     [[nodiscard]] Pose handle_for(const Pose& grip) const {
-        return settings_.mapping.to_device(grip - grab_offset_);
+        return settings_.mapping.to_device(grip - grab_offset_ - turned());
     }
     [[nodiscard]] const Pose& grab_offset() const { return grab_offset_; }
     /// Coordinates of a linkage now, rad and m.
@@ -139,6 +142,12 @@ class Session {
     [[nodiscard]] Mat3 loop_mobility() const;
     [[nodiscard]] double stored_energy() const;
     void grasp();
+    void place_handle();
+    void locate_handle();
+    [[nodiscard]] Pose turned() const { return {0.0, 0.0, placement_.turn().angle()}; }
+    [[nodiscard]] Pose target() const { return (parked_ ? park_ : Pose(handle_ + grab_offset_)) + turned(); }
+    void place_target(HandInput& hand) const;
+    void book_own_work();
     void freeze_offset();
     void read_device();
     void follow_handle();
@@ -171,6 +180,15 @@ class Session {
     Twist handle_velocity_{0.0, 0.0, 0.0};
     Wrench hand_force_{0.0, 0.0, 0.0};
     Pose grab_offset_{0.0, 0.0, 0.0};
+    Placement placement_;
+    /// Where the tool is held while the handle is free (without turn).
+    Pose park_{0.0, 0.0, 0.0};
+    bool parked_{false};
+    /// The coupling's gains were chosen here, so they follow a new scale.
+    bool gains_follow_scale_{true};
+    Pose last_target_{0.0, 0.0, 0.0};
+    /// Work that sources, clutch and turn put in since the ledger was booked last, J.
+    double source_work_{0.0};
     Mat3 device_mass_{Mat3::Identity()};
     Mat3 mobility_{Mat3::Zero()};
     /// What weighs a grip acceleration into a force (settings.hand_force).
