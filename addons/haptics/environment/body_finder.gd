@@ -28,6 +28,9 @@ var _leaving: Dictionary[int, bool] = {}
 var _next_number := 1
 var _most_results := _FIRST_RESULTS
 var _problems := PackedStringArray()
+# what was answered last, and the readers of that
+var _last_keys := PackedInt64Array()
+var _last: Array[BodyReader] = []
 
 
 func _init(units: HapticUnits, remove: Callable) -> void:
@@ -42,14 +45,32 @@ func _init(units: HapticUnits, remove: Callable) -> void:
 func find(
 	space: PhysicsDirectSpaceState2D, discs: Array[Vector3], growth: float, mask: int
 ) -> Array[BodyReader]:
-	var found: Dictionary[int, BodyReader] = {}
 	_query.collision_mask = mask
-	for small: Vector3 in discs:
-		var disc := Vector3(small.x, small.y, small.z + growth)
-		_circle.radius = disc.z
+	var keys := PackedInt64Array()
+	var answers: Array[Array] = []
+	for disc: Vector3 in discs:
+		_circle.radius = disc.z + growth
 		_query.transform = Transform2D(0.0, Vector2(disc.x, disc.y))
+		var results := _ask(space)
+		answers.append(results)
+		for result: Dictionary in results:
+			keys.append(result["collider_id"])
+	# mostly the same as at the tick before; tiles come and go within their layer
+	if keys != _last_keys or not _layers.is_empty():
+		_last_keys = keys
+		_last = _sort_out(answers, discs, growth, mask)
+	return _last
+
+
+# the readers of what was answered, by their numbers
+func _sort_out(
+	answers: Array[Array], discs: Array[Vector3], growth: float, mask: int
+) -> Array[BodyReader]:
+	var found: Dictionary[int, BodyReader] = {}
+	for index: int in discs.size():
+		var disc := Vector3(discs[index].x, discs[index].y, discs[index].z + growth)
 		var seen: Dictionary[int, bool] = {}
-		for result: Dictionary in _ask(space):
+		for result: Dictionary in answers[index]:
 			var key: int = result["collider_id"]
 			if seen.has(key):
 				continue
@@ -174,6 +195,8 @@ func _on_leaving(key: int) -> void:
 
 
 func _drop(reader: BodyReader) -> void:
+	_last_keys.clear()
+	_last = []
 	_numbers.erase(reader.id)
 	if is_instance_valid(reader.node) and reader.node.tree_exiting.is_connected(_on_leaving):
 		if not reader is TileBody:

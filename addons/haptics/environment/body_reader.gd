@@ -33,6 +33,8 @@ var _units: HapticUnits
 # x, y, angle, vx, vy, angular velocity
 var _state: PackedFloat64Array = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
 var _tick := -1
+# stood where it stands at the tick before
+var _rests := false
 var _print := 0
 var _seen_at := Transform2D()
 var _seen_frame := -1
@@ -96,7 +98,15 @@ func kind() -> String:
 ## Pose and velocity at tick number `tick`: x, y, angle, vx, vy, angular velocity. Not to be
 ## changed.
 func read_state(tick: int, seconds: float) -> PackedFloat64Array:
-	_follow(tick, seconds)
+	var at := node.global_transform
+	# most bodies rest at most ticks
+	if at == _seen_at and _seen_frame == _units.frame:
+		if not _rests:
+			_set_velocity(0.0, 0.0, 0.0)
+			_rests = true
+	else:
+		_follow(at, tick, seconds)
+	_tick = tick
 	return _state
 
 
@@ -135,23 +145,19 @@ func _features() -> Array:
 
 
 # Godot reports no velocity for what a script moves, and the server's transform lags: difference.
-func _follow(tick: int, seconds: float) -> void:
-	var at := node.global_transform
+func _follow(at: Transform2D, tick: int, seconds: float) -> void:
 	var is_next := _tick == tick - 1 and seconds > 0.0
-	if at == _seen_at and _seen_frame == _units.frame:
+	var x := _state[0]
+	var y := _state[1]
+	var angle := _state[2]
+	_place(at)
+	if is_next:
+		_set_velocity(
+			(_state[0] - x) / seconds, (_state[1] - y) / seconds, (_state[2] - angle) / seconds
+		)
+	if not is_next or Vector2(_state[3], _state[4]).length() > TELEPORT_SPEED:
 		_set_velocity(0.0, 0.0, 0.0)
-	else:
-		var x := _state[0]
-		var y := _state[1]
-		var angle := _state[2]
-		_place(at)
-		if is_next:
-			_set_velocity(
-				(_state[0] - x) / seconds, (_state[1] - y) / seconds, (_state[2] - angle) / seconds
-			)
-		if not is_next or Vector2(_state[3], _state[4]).length() > TELEPORT_SPEED:
-			_set_velocity(0.0, 0.0, 0.0)
-	_tick = tick
+	_rests = false
 
 
 # the angle is kept free of jumps from +pi to -pi

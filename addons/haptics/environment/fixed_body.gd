@@ -9,9 +9,8 @@ func kind() -> String:
 	return "kinematic" if _moves else "fixed"
 
 
-func read_state(tick: int, seconds: float) -> PackedFloat64Array:
-	var state := super.read_state(tick, seconds)
+func _follow(at: Transform2D, tick: int, seconds: float) -> void:
+	super._follow(at, tick, seconds)
 	if not _moves and Vector3(_state[3], _state[4], _state[5]).length() > REST_SPEED:
 		_moves = true
 		is_dirty = true
-	return state

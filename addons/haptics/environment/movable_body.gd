@@ -32,10 +32,12 @@ func read_state(tick: int, seconds: float) -> PackedFloat64Array:
 	var body := node as RigidBody2D
 	if body.freeze:
 		return super.read_state(tick, seconds)
-	if body.sleeping and _seen_at == body.global_transform and _seen_frame == _units.frame:
+	_rests = false
+	var at := body.global_transform
+	if body.sleeping and _seen_at == at and _seen_frame == _units.frame:
 		_set_velocity(0.0, 0.0, 0.0)
 	else:
-		_place(body.global_transform)
+		_place(at)
 		var velocity := _units.velocity_to_meters(body.linear_velocity)
 		_set_velocity(velocity[0], velocity[1], -body.angular_velocity)
 	_tick = tick

@@ -1,5 +1,5 @@
 extends GutTest
-## Never comes back. It sleeps meanwhile, so that what runs beside the self test is not slowed by it.
+## Never comes back. It sleeps meanwhile, so that it does not slow down what runs beside it.
 
 
 func test_is_busy_for_ever() -> void:
