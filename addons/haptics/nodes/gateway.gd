@@ -38,6 +38,7 @@ enum State {
 	HELD,
 	FAULTS,
 	BUTTONS,
+	HAND_SHARE,
 	COUNT,
 }
 
@@ -220,6 +221,11 @@ func aim(x: float, y: float, angle: float) -> void:
 ## The hand takes hold of the tool, or lets go.
 func hold(held: bool) -> void:
 	server().world_hold(_world, held)
+
+
+## How the handle holds the tool from now on: mapping, clutch and turn. Returns what is wrong.
+func place(placement: Dictionary) -> PackedStringArray:
+	return server().world_place(_world, placement)
 
 
 ## Asks for force, or takes it off.

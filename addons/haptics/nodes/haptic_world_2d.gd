@@ -152,6 +152,9 @@ var coupling_rotation_damping: float = 0.0
 @export_range(0.01, 1.0, 0.01, "or_greater", "suffix:N") var observer_noise: float = 0.05
 ## Largest relative error of the device's mass that has to stay stable.
 @export_range(0.0, 0.5, 0.01) var observer_mass_error: float = 0.25
+## Part of the device's inertia that is kept from the hand in free motion, 0 to 0.95. Needs
+## [constant FOUR_CHANNEL], and [member observer] or a device that measures the hand's force.
+@export_range(0.0, 0.95, 0.01) var hidden_inertia: float = 0.0
 ## Damps the handle while more energy came out of the loop than went into it.
 @export var passivity_control: bool = false
 
@@ -162,10 +165,17 @@ var coupling_rotation_damping: float = 0.0
 @export_custom(PROPERTY_HINT_NONE, "suffix:m/s²") var gravity: Vector2 = Vector2.ZERO
 
 @export_group("Mapping", "mapping")
-## Meters in the scene per meter at the device; a wall feels s² times as stiff.
+## Meters in the scene per meter at the device; a wall feels s² times as stiff. What changes of the
+## mapping while the world runs comes without a jump: the force fades out and in.
 @export_range(0.1, 10.0, 0.001, "or_greater") var mapping_scale: float = 1.0
 ## Turn of the device's axes in the scene, rad, clockwise.
 @export_range(-180.0, 180.0, 0.1, "radians_as_degrees") var mapping_rotation: float = 0.0
+## Angle added to the handle's, rad, clockwise, any number of turns, followed at up to 10 rad/s.
+## With a device of two freedoms this alone turns the tool.
+@export_range(-360.0, 360.0, 0.1, "or_less", "or_greater", "radians_as_degrees")
+var mapping_turn: float = 0.0
+## The tool stays where it is and the handle moves freely, to be put elsewhere in its workspace.
+var clutched: bool = false
 
 var _unattended := DisplayServer.get_name() == "headless"
 var _warnings := Warnings.new(self, Checks.of_world.bind(self))

@@ -7,6 +7,7 @@ const Gateway := preload("gateway.gd")
 const Neighborhood := preload("../environment/neighborhood.gd")
 const TouchSignals := preload("touch_signals.gd")
 const Reach := preload("../environment/reach.gd")
+const WorldSettings := preload("world_settings.gd")
 const ToolReader := preload("../environment/tool_reader.gd")
 
 # below this scale of time a scene counts as paused
@@ -31,6 +32,7 @@ var _reach := Reach.new()
 var _touches: TouchSignals
 var _top_speed := 0.0
 var _was_full := false
+var _placement := {}
 var _faults: PackedStringArray = []
 
 
@@ -90,17 +92,20 @@ func tick(seconds: float) -> PackedStringArray:
 	var scale := 1.0 if _is_lockstep else Engine.time_scale
 	if _stall(scale < _LEAST_TIME_SCALE):
 		return []
+	var problems := _place()
 	native.refresh()
 	state = native.get_state()
 	var impulses := native.take_impulses()
 	units.set_frame(_world.global_transform)
-	var problems := neighborhood.publish(
-		_world.get_world_2d(),
-		_reach_of_tool(seconds / scale),
-		tool.collision_mask,
-		seconds,
-		scale,
-		_gravity(scale)
+	problems.append_array(
+		neighborhood.publish(
+			_world.get_world_2d(),
+			_reach_of_tool(seconds / scale),
+			tool.collision_mask,
+			seconds,
+			scale,
+			_gravity(scale)
+		)
 	)
 	if (neighborhood.left_out > 0) != _was_full:
 		_was_full = neighborhood.left_out > 0
@@ -172,6 +177,15 @@ func _reach_of_tool(tick_seconds: float) -> Array[Vector3]:
 	var extent := units.to_meters(ToolReader.extent(tool))
 	var radius := units.to_pixels(_reach.distance(extent, speed, _top_speed, tick_seconds))
 	return [Vector3(place.x, place.y, radius)]
+
+
+# hands over what changed of mapping, clutch and turn
+func _place() -> PackedStringArray:
+	var wanted := WorldSettings.placement(_world)
+	if wanted == _placement:
+		return []
+	_placement = wanted
+	return native.place(wanted)
 
 
 # pauses the output while time nearly stands; says whether it does

@@ -26,6 +26,7 @@ static func of(world: HapticWorld2D) -> Dictionary:
 		"coupling_damping": _axes(world.coupling_damping, world.coupling_rotation_damping),
 		"velocity_window": world.velocity_window,
 		"observer": world.observer,
+		"hidden_inertia": world.hidden_inertia,
 		"passivity_control": world.passivity_control,
 		"observer_noise": world.observer_noise,
 		"observer_mass_error": world.observer_mass_error,
@@ -38,6 +39,16 @@ static func of(world: HapticWorld2D) -> Dictionary:
 		"collision_method": _METHODS[world.collision_method],
 		"collision_speed": world.collision_speed,
 		"safety": limits.to_settings(clampf(heaviest, 0.001, 100.0), clampf(largest, 1e-6, 10.0)),
+	}
+
+
+## How the handle holds the tool: mapping, clutch and turn, for [method HapticServer.world_place].
+static func placement(world: HapticWorld2D) -> Dictionary:
+	return {
+		"mapping_scale": world.mapping_scale,
+		"mapping_rotation": -world.mapping_rotation,
+		"clutched": world.clutched,
+		"turn": -world.mapping_turn,
 	}
 
 

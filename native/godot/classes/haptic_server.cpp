@@ -224,6 +224,7 @@ PackedFloat64Array HapticServer::world_get_state(int64_t world) const {
     s[STATE_HELD] = r.held ? 1.0 : 0.0;
     s[STATE_FAULTS] = static_cast<double>(r.faults);
     s[STATE_BUTTONS] = static_cast<double>(r.buttons);
+    s[STATE_HAND_SHARE] = r.hand_share;
     return out;
 }
 
@@ -314,6 +315,15 @@ void HapticServer::world_hold(int64_t world, bool held) {
         w->send(held ? RunnerCommand::hold : RunnerCommand::release);
 }
 
+PackedStringArray HapticServer::world_place(int64_t world, const Dictionary& placement) {
+    Problems problems;
+    const HandPlacement wanted = read_placement(placement, problems);
+    HapticWorld* w = find(world);
+    if (w != nullptr && problems.none())
+        w->place(wanted);
+    return problems.to_godot();
+}
+
 void HapticServer::world_arm(int64_t world, bool armed) {
     if (HapticWorld* w = find(world))
         w->send(armed ? RunnerCommand::arm : RunnerCommand::disarm);
@@ -375,6 +385,7 @@ void HapticServer::_bind_methods() {
     ClassDB::bind_method(D_METHOD("world_get_statistics", "world"), &HapticServer::world_get_statistics);
     ClassDB::bind_method(D_METHOD("world_aim", "world", "grip"), &HapticServer::world_aim);
     ClassDB::bind_method(D_METHOD("world_hold", "world", "held"), &HapticServer::world_hold);
+    ClassDB::bind_method(D_METHOD("world_place", "world", "placement"), &HapticServer::world_place);
     ClassDB::bind_method(D_METHOD("world_arm", "world", "armed"), &HapticServer::world_arm);
     ClassDB::bind_method(D_METHOD("world_set_paused", "world", "paused"), &HapticServer::world_set_paused);
     ClassDB::bind_method(D_METHOD("world_press_stop", "world"), &HapticServer::world_press_stop);
@@ -412,6 +423,7 @@ void HapticServer::_bind_methods() {
     BIND_ENUM_CONSTANT(STATE_HELD);
     BIND_ENUM_CONSTANT(STATE_FAULTS);
     BIND_ENUM_CONSTANT(STATE_BUTTONS);
+    BIND_ENUM_CONSTANT(STATE_HAND_SHARE);
     BIND_ENUM_CONSTANT(STATE_COUNT);
 }
 

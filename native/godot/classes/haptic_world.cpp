@@ -355,6 +355,11 @@ bool HapticWorld::send(RunnerCommand command) {
     return running() && runner_->try_send(command);
 }
 
+void HapticWorld::place(const HandPlacement& placement) {
+    if (running())
+        runner_->place(placement);
+}
+
 void HapticWorld::home_device(Problems& problems) {
     if (!running())
         problems.add("The world does not run, so its device cannot be homed. Start it first.");

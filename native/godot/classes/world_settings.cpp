@@ -155,6 +155,19 @@ DeviceOptions read_hid_pantograph(const Dictionary& from, Problems& problems) {
 
 } // namespace
 
+HandPlacement read_placement(const Dictionary& from, Problems& problems) {
+    HandPlacement p;
+    DictionaryReader r(from, "", problems);
+    p.mapping.scale = r.number("mapping_scale", p.mapping.scale);
+    p.mapping.rotation = r.number("mapping_rotation", p.mapping.rotation);
+    p.mapping.offset = r.vec3("mapping_offset", p.mapping.offset);
+    p.clutched = r.flag("clutched", p.clutched);
+    p.turn = r.number("turn", p.turn);
+    r.finish();
+    problems.add(validate(p));
+    return p;
+}
+
 WorldSettings read_world_settings(const Dictionary& from, Problems& problems) {
     WorldSettings w;
     DictionaryReader r(from, "", problems);
@@ -175,6 +188,9 @@ WorldSettings read_world_settings(const Dictionary& from, Problems& problems) {
     w.session.observer.enabled = r.flag("observer", w.session.observer.enabled);
     w.session.observer.noise = r.number("observer_noise", w.session.observer.noise);
     w.session.observer.mass_error = r.number("observer_mass_error", w.session.observer.mass_error);
+    w.session.hidden_inertia = r.number("hidden_inertia", w.session.hidden_inertia);
+    if (w.session.hidden_inertia > 0.0)
+        w.session.hand_force = HandForce::transparent;
     w.session.passivity_control = r.flag("passivity_control", w.session.passivity_control);
     w.session.arm_at_start = r.flag("arm_at_start", w.session.arm_at_start);
     w.session.hold_at_start = r.flag("hold_at_start", w.session.hold_at_start);

@@ -66,6 +66,7 @@ class HapticServer : public godot::Object {
         STATE_HELD,
         STATE_FAULTS,
         STATE_BUTTONS,
+        STATE_HAND_SHARE,
         STATE_COUNT,
     };
 
@@ -97,6 +98,7 @@ class HapticServer : public godot::Object {
     godot::Dictionary world_get_statistics(int64_t world) const;
     void world_aim(int64_t world, const godot::PackedFloat64Array& grip);
     void world_hold(int64_t world, bool held);
+    godot::PackedStringArray world_place(int64_t world, const godot::Dictionary& placement);
     void world_arm(int64_t world, bool armed);
     void world_set_paused(int64_t world, bool paused);
     void world_press_stop(int64_t world);

@@ -58,6 +58,7 @@ class HapticWorld {
     [[nodiscard]] godot::Array plan() const;
     void aim(const Pose& grip);
     bool send(RunnerCommand command);
+    void place(const HandPlacement& placement);
     /// The device's handle is in its home pose now. Waits for a real device's answer, at most a second.
     void home_device(Problems& problems);
     void save_recording(const std::string& path, Problems& problems);

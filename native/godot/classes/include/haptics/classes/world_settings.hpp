@@ -27,6 +27,9 @@ struct WorldSettings {
     SafetyLimits safety;
 };
 
+/// Clutch, mapping and turn; keys mapping_scale, mapping_rotation, mapping_offset, clutched, turn.
+HandPlacement read_placement(const godot::Dictionary& from, Problems& problems);
+
 WorldSettings read_world_settings(const godot::Dictionary& from, Problems& problems);
 
 /// A surface; keys stiffness, damping, static_friction, dynamic_friction, restitution.
