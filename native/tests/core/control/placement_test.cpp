@@ -10,6 +10,8 @@
 #include <limits>
 #include <numbers>
 
+#include "support/random.hpp"
+
 using namespace haptics;
 using shared::ObservedTool;
 using shared::ObservedToolOptions;
@@ -287,5 +289,52 @@ TEST_SUITE("placement") {
         CHECK(session.report().grip.z() == doctest::Approx(-2.0).epsilon(0.01));
         CHECK(jump < 0.05);
         CHECK(session.report().faults == Fault::none);
+    }
+
+    TEST_CASE("clutch, mapping, turn, holding and grabbing in any order: finite, within the limits, and at "
+              "peace in the end") {
+        testing::Random random(77);
+        for (int run = 0; run < 40; ++run) {
+            CAPTURE(run);
+            ObservedToolOptions o = known(run % 2 == 0 ? 1000.0 : 500.0);
+            o.hand = pressing(random.uniform(0.0, 3.0));
+            o.observer = run % 4 == 3;
+            ObservedTool tool(o);
+            Session& session = *tool.session;
+            HandPlacement wanted;
+            double largest = 0.0;
+            for (int i = 0; i < 3000; ++i) {
+                if (random.below(60) == 0) {
+                    const int what = random.below(5);
+                    const double drawn = random.uniform(-1.0, 1.0);
+                    wanted.clutched = what == 0 ? !wanted.clutched : wanted.clutched;
+                    wanted.mapping.scale = what == 1 ? std::exp(drawn) : wanted.mapping.scale;
+                    wanted.mapping.rotation = what == 2 ? 3.0 * drawn : wanted.mapping.rotation;
+                    wanted.turn = what == 3 ? 4.0 * drawn : wanted.turn;
+                    session.place(wanted);
+                    if (what == 4)
+                        session.hold(drawn > -0.5);
+                }
+                if (random.below(200) == 0)
+                    session.grab(Grip{0, Vec2(random.uniform(-0.01, 0.01), 0.0), random.below(2) == 0});
+                session.step();
+                const HapticReport& r = session.report();
+                REQUIRE(r.grip.allFinite());
+                REQUIRE(r.force.allFinite());
+                REQUIRE(r.hand_share >= 0.0);
+                REQUIRE(r.hand_share <= 1.0);
+                largest =
+                    std::max(largest, session.settings().mapping.wrench_to_device(r.force).head<2>().norm());
+            }
+            CHECK(largest <= 30.0 * 1.0001);
+            wanted.clutched = false;
+            session.place(wanted);
+            // held by a point it would go on spinning
+            session.grab(Grip{0, Vec2::Zero(), true});
+            for (int i = 0; i < 4000; ++i)
+                session.step();
+            CHECK(session.report().hand_share == 1.0);
+            CHECK(session.report().velocity.head<2>().norm() < 1e-2);
+        }
     }
 }
