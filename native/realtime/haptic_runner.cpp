@@ -5,13 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
 namespace haptics {
 
 HapticRunner::HapticRunner(std::unique_ptr<Session> session, StepHook* hook)
     : session_(std::move(session))
     , hook_(hook)
-    , clock_(1.0 / session_->settings().step) {}
+    , clock_(1.0 / session_->settings().step) {
+    // who asks before the first step hears of the start
+    reports_.try_write(session_->report());
+}
 
 HapticRunner::~HapticRunner() {
     stop();
@@ -89,6 +93,9 @@ LoopStatistics HapticRunner::statistics() const noexcept {
 }
 
 void HapticRunner::take_commands() noexcept {
+    const auto grip = grips_.try_read();
+    if (grip.is_new)
+        session_->grab(grip.value);
     commands_.drain([this](RunnerCommand command) {
         switch (command) {
         case RunnerCommand::hold:
@@ -121,7 +128,29 @@ void HapticRunner::watch_scene(double time) noexcept {
     session_->set_paused(paused_by_scene_ || stalled_);
 }
 
-void HapticRunner::step(const StepTime& time) {
+bool HapticRunner::attach(HapticRunner& guest, std::uint64_t id) noexcept {
+    for (Guest& g : guests_)
+        if (g.runner.load() == nullptr) {
+            g.id = id;
+            guest.is_guest_ = true;
+            g.runner.store(&guest);
+            return true;
+        }
+    return false;
+}
+
+// The loop marks its turn before it reads the places, and the place is empty before the turn is read: so
+// either the loop sees the empty place, or its step is waited for.
+void HapticRunner::detach(HapticRunner& guest) noexcept {
+    for (Guest& g : guests_)
+        if (g.runner.load() == &guest)
+            g.runner.store(nullptr);
+    const std::uint64_t turn = turn_.load();
+    while (turn % 2 == 1 && turn_.load() == turn && thread_.running())
+        std::this_thread::yield();
+}
+
+void HapticRunner::take_scene(const StepTime& time) noexcept {
     if (time.skipped > 0)
         session_->skip(static_cast<double>(time.skipped) * time.dt);
     const auto newest = neighborhoods_.try_read();
@@ -135,9 +164,29 @@ void HapticRunner::step(const StepTime& time) {
         session_->place(placement.value);
     take_commands();
     watch_scene(time.time());
+}
+
+void HapticRunner::step(const StepTime& time) {
+    turn_.fetch_add(1);
+    step_all(time);
+    turn_.fetch_add(1);
+}
+
+void HapticRunner::step_all(const StepTime& time) {
+    take_scene(time);
+    if (is_guest_ && paused_by_scene_)
+        return;
     if (hook_ != nullptr)
         hook_->before_step(*session_);
+    for (Guest& g : guests_)
+        if (HapticRunner* guest = g.runner.load())
+            session_->follow(*guest->session_, g.id);
     session_->step();
+    for (Guest& g : guests_)
+        if (HapticRunner* guest = g.runner.load()) {
+            session_->push(*guest->session_, g.id);
+            guest->step(time);
+        }
     publish_results();
 }
 

@@ -5,6 +5,7 @@ extends RefCounted
 
 const BodyReader := preload("body_reader.gd")
 const FixedBody := preload("fixed_body.gd")
+const LinkBody := preload("link_body.gd")
 const KinematicBody := preload("kinematic_body.gd")
 const MovableBody := preload("movable_body.gd")
 const TileBody := preload("tile_body.gd")
@@ -26,6 +27,7 @@ var _numbers: Dictionary[int, BodyReader] = {}
 # left the tree since the last look; some come back at once, under another parent
 var _leaving: Dictionary[int, bool] = {}
 var _next_number := 1
+var _pushes_links := false
 var _most_results := _FIRST_RESULTS
 var _problems := PackedStringArray()
 # what was answered last, and the readers of that
@@ -37,7 +39,8 @@ func _init(units: HapticUnits, remove: Callable) -> void:
 	_units = units
 	_remove = remove
 	_query.shape = _circle
-	_query.collide_with_areas = false
+	# tools and links that nobody holds are areas; other areas are no matter
+	_query.collide_with_areas = true
 
 
 ## The bodies within the discs (canvas: x, y, radius in px), each grown by `growth` px, that `mask`
@@ -72,7 +75,7 @@ func _sort_out(
 		var seen: Dictionary[int, bool] = {}
 		for result: Dictionary in answers[index]:
 			var key: int = result["collider_id"]
-			if seen.has(key):
+			if seen.has(key) or _is_no_matter(result["collider"]):
 				continue
 			seen[key] = true
 			var reader: BodyReader = _readers.get(key)
@@ -86,6 +89,16 @@ func _sort_out(
 	for id: int in ids:
 		readers.append(found[id])
 	return readers
+
+
+## Never finds these.
+func leave_out(parts: Array[RID]) -> void:
+	_query.exclude = parts
+
+
+## Links are pushed from now on.
+func push_links() -> void:
+	_pushes_links = true
 
 
 ## The reader with that number, null when it is gone.
@@ -124,6 +137,10 @@ func clear() -> void:
 	_leaving.clear()
 
 
+func _is_no_matter(collider: Object) -> bool:
+	return collider is Area2D and not collider is HapticTool2D
+
+
 func _ask(space: PhysicsDirectSpaceState2D) -> Array[Dictionary]:
 	var results := space.intersect_shape(_query, _most_results)
 	while results.size() >= _most_results and _most_results < _MOST_RESULTS:
@@ -158,6 +175,8 @@ func _make(body: CollisionObject2D) -> BodyReader:
 	var reader: BodyReader
 	if body is RigidBody2D:
 		reader = MovableBody.new(body, _next_number, _units)
+	elif body is HapticLink2D and _pushes_links:
+		reader = LinkBody.new(body, _next_number, _units)
 	elif body is AnimatableBody2D or not body is StaticBody2D:
 		reader = KinematicBody.new(body, _next_number, _units)
 	else:

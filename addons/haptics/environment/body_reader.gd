@@ -2,6 +2,7 @@
 extends RefCounted
 ## What the environment knows of one body; each kind of body has its own file beside this one.
 
+const Gateway := preload("../nodes/gateway.gd")
 const ShapeReader := preload("shape_reader.gd")
 const SurfaceReader := preload("surface_reader.gd")
 
@@ -112,6 +113,11 @@ func read_state(tick: int, seconds: float) -> PackedFloat64Array:
 
 ## Takes an impulse of the tool (N s, N s, N m s), seconds of game time a second of real time.
 func take_impulse(_x: float, _y: float, _angular: float, _time_scale: float) -> void:
+	pass
+
+
+## Tells the native side what else it is, at every tick after its description.
+func tie(_native: Gateway) -> void:
 	pass
 
 

@@ -12,7 +12,6 @@ const Reach := preload("reach.gd")
 const _TICKS_TO_LOOK := 8
 # and everything is described anew in so many, whatever was noticed
 const _TICKS_TO_DESCRIBE := 240
-
 ## Surface of bodies that have none.
 var default_surface: HapticSurface
 ## Bodies in the last snapshot.
@@ -68,6 +67,7 @@ func publish(
 		var state := reader.read_state(_tick, tick_seconds)
 		if reader.is_dirty:
 			_describe(reader, problems)
+		reader.tie(_native)
 		ids.append(reader.id)
 		states.append_array(state)
 	if time_scale != 1.0:
@@ -91,6 +91,17 @@ func give(impulses: PackedFloat64Array, time_scale: float) -> void:
 		var reader := _finder.reader_of(int(impulses[i]))
 		if reader != null and reader.is_present():
 			reader.take_impulse(impulses[i + 1], impulses[i + 2], impulses[i + 3], time_scale)
+
+
+## Links of linkages that run beside the tool are pushed; else they are taken for bodies that do not
+## yield.
+func push_links() -> void:
+	_finder.push_links()
+
+
+## Areas that are no neighbors: the parts of the tool itself.
+func leave_out(parts: Array[RID]) -> void:
+	_finder.leave_out(parts)
 
 
 ## The node with that number, null when it is gone.

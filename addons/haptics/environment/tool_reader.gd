@@ -10,7 +10,7 @@ static func describe(
 	tool: HapticTool2D, units: HapticUnits, problems: PackedStringArray
 ) -> Dictionary:
 	var reader := ShapeReader.new(units)
-	reader.read(tool, Transform2D.IDENTITY)
+	reader.read(tool.get_shape_source(), Transform2D.IDENTITY)
 	problems.append_array(reader.problems)
 	var body := {
 		"kind": "tool",

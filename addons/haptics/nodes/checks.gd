@@ -8,6 +8,7 @@ const BodyReader := preload("../environment/body_reader.gd")
 const FixedBody := preload("../environment/fixed_body.gd")
 const MovableBody := preload("../environment/movable_body.gd")
 const ToolReader := preload("../environment/tool_reader.gd")
+const LinkageChecks := preload("linkage_checks.gd")
 const StartCheck := preload("../environment/start_check.gd")
 
 const NO_WORLD := "There is no HapticWorld2D in this scene. Add one, or nothing can be felt."
@@ -74,7 +75,9 @@ static func of_object(body: RigidBody2D) -> PackedStringArray:
 
 ## The tool.
 static func of_tool(tool: HapticTool2D) -> PackedStringArray:
-	if not tool.is_inside_tree():
+	if tool is HapticLink2D:
+		return LinkageChecks.of_link(tool as HapticLink2D)
+	if not tool.is_inside_tree() or tool.get_shape_source() != tool:
 		return []
 	var world := HapticWorld2D.find_for(tool)
 	if world == null:
@@ -87,7 +90,7 @@ static func of_tool(tool: HapticTool2D) -> PackedStringArray:
 		problems.append(
 			"The scale is %s. Set it to 1 and scale the shapes instead." % tool.global_scale
 		)
-	if world.get_tool() != tool:
+	if world.get_tool() != tool and not world.get_tool() is HapticLink2D:
 		problems.append(
 			(
 				"%s already has the tool %s; one world holds one tool. Remove one of them."

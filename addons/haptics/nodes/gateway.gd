@@ -42,6 +42,8 @@ enum State {
 	COUNT,
 }
 
+const Self := preload("gateway.gd")
+
 ## What a user is told, once, where the library is missing.
 const MISSING := (
 	"The haptics library is not built for this system: run `make build`"
@@ -100,6 +102,11 @@ static func pantograph_preset(preset: String) -> Dictionary:
 static func describe_pantograph(geometry: Dictionary) -> Dictionary:
 	var native := server()
 	return native.describe_pantograph(geometry) if native != null else {}
+
+
+## Its number; 0 where the library is missing.
+func id() -> int:
+	return _world
 
 
 ## False where the library is missing: then nothing else here may be called.
@@ -226,6 +233,34 @@ func hold(held: bool) -> void:
 ## How the handle holds the tool from now on: mapping, clutch and turn. Returns what is wrong.
 func place(placement: Dictionary) -> PackedStringArray:
 	return server().world_place(_world, placement)
+
+
+## While a linkage is the tool: the hand takes hold of another link, at x, y in the axes of its node
+## (m), of the point alone or with `pose` of the angle too. Returns what is wrong.
+func grab(link: int, point: PackedFloat64Array, pose: bool) -> PackedStringArray:
+	return server().world_grab(_world, link, point, pose)
+
+
+## Eight numbers for every link of a linkage that is the tool: pose of its node, velocity of its
+## center of mass, coordinate and its rate.
+func get_links() -> PackedFloat64Array:
+	return server().world_get_links(_world)
+
+
+## A linkage: starts it beside `host`, whose loop steps it then. Returns what is wrong.
+func start_beside(host: Self) -> PackedStringArray:
+	return server().world_start_beside(_world, host.id())
+
+
+## A body that can be pushed is link `link` of `linkage`, which runs beside this world. Returns what
+## is wrong.
+func tie_body(body: int, linkage: Self, link: int) -> PackedStringArray:
+	return server().world_tie_body(_world, body, linkage.id(), link)
+
+
+## Number of the link that is held.
+func get_held_link() -> int:
+	return server().world_get_held_link(_world)
 
 
 ## Asks for force, or takes it off.

@@ -20,9 +20,14 @@ const _FETCH_SPEED := 0.15
 const _NOTCH := deg_to_rad(6.0)
 const _TURN_SPEED := deg_to_rad(90.0)
 const _MOST_TURN := deg_to_rad(55.0)
+# letting go and taking hold again, with some room, s
+const _CHANGE := 0.25
 const _COLOR := Color(0.553, 0.647, 0.953)
 
 var _is_engaged := false
+# how long the hand rests where it is once it was told to take another part, s
+var _rest := 0.0
+var _holds_another := false
 # from the cursor to where the hand still is, px
 var _lag := Vector2.ZERO
 var _angle := 0.0
@@ -61,6 +66,14 @@ func get_wish() -> Vector2:
 	return get_global_mouse_position() + _lag
 
 
+## The hand stays where it is, and soon takes what comes near the cursor: for a world that gives it
+## something else to hold.
+func let_go() -> void:
+	_is_engaged = false
+	_rest = _CHANGE
+	_holds_another = true
+
+
 func _unhandled_input(event: InputEvent) -> void:
 	var button := event as InputEventMouseButton
 	if button == null or not button.pressed:
@@ -81,7 +94,10 @@ func _process(delta: float) -> void:
 	if not world.is_running():
 		return
 	queue_redraw()
+	_rest = maxf(_rest - delta, 0.0)
 	if not _is_engaged:
+		if _rest > 0.0:
+			return
 		if get_global_mouse_position().distance_to(world.get_grip().origin) > _near():
 			return
 		_engage()
@@ -109,9 +125,13 @@ func _draw() -> void:
 
 # from where the tool is: nothing jumps
 func _engage() -> void:
-	if _is_engaged:
+	if _is_engaged or _rest > 0.0:
 		return
 	_is_engaged = true
+	if _holds_another:
+		_holds_another = false
+		_first_angle = _world().get_handle().get_rotation()
+		_angle = _first_angle
 	_lag = _world().get_handle().origin - get_global_mouse_position()
 
 

@@ -110,6 +110,11 @@ func get_penetration_of(body: Node2D) -> float:
 	return deepest
 
 
+## Whose shapes are its shapes: a body in the hand has a tool that stands for it.
+func get_shape_source() -> CollisionObject2D:
+	return self
+
+
 ## Pushes an error for every problem of this tool that was not told before.
 func tell_problems() -> void:
 	_warnings.say()

@@ -15,7 +15,7 @@ signal started
 signal stopped
 ## The output went off, and stays off until [method arm]; `fault` says why and what to do.
 signal fault_raised(fault: String)
-## Another tool is held; either may be null.
+## Another tool, or another link of a linkage, is held; either may be null.
 signal tool_changed(from: HapticTool2D, to: HapticTool2D)
 ## More lies within reach of the tool than the loop can hold: of that, `left_out` convex pieces
 ## cannot be felt, the farthest. Said when it begins; an error says it too, once.
@@ -84,6 +84,9 @@ const Warnings := preload("warnings.gd")
 const Checks := preload("checks.gd")
 const Session := preload("world_session.gd")
 const WorldSettings := preload("world_settings.gd")
+const Tools := preload("tools.gd")
+const Reports := preload("world_reports.gd")
+const StopKey := preload("stop_key.gd")
 const NeighborhoodView := preload("neighborhood_view.gd")
 
 ## Group of all haptic worlds in the tree.
@@ -181,7 +184,9 @@ var _unattended := DisplayServer.get_name() == "headless"
 var _warnings := Warnings.new(self, Checks.of_world.bind(self))
 var _session: Session
 var _wants_start := false
-var _view: NeighborhoodView
+var _chosen: HapticTool2D
+var _last_tool: HapticTool2D
+var _view: Node2D
 
 
 func _notification(what: int) -> void:
@@ -193,12 +198,9 @@ func _notification(what: int) -> void:
 			_wants_start = auto_start
 		NOTIFICATION_EXIT_TREE:
 			stop()
-		NOTIFICATION_PAUSED:
+		NOTIFICATION_PAUSED, NOTIFICATION_UNPAUSED:
 			if is_running():
-				_session.native.set_paused(true)
-		NOTIFICATION_UNPAUSED:
-			if is_running():
-				_session.native.set_paused(false)
+				_session.native.set_paused(what == NOTIFICATION_PAUSED)
 	_warnings.follow(what)
 
 
@@ -218,15 +220,7 @@ func _process(_delta: float) -> void:
 
 
 func _input(event: InputEvent) -> void:
-	if Engine.is_editor_hint() or not is_running():
-		return
-	var action := HapticSettings.text(HapticSettings.STOP_ACTION)
-	if action != "" and InputMap.has_action(action):
-		if event.is_action_pressed(action):
-			press_stop()
-		return
-	var key := event as InputEventKey
-	if key != null and key.pressed and not key.echo and key.keycode == KEY_ESCAPE:
+	if not Engine.is_editor_hint() and is_running() and StopKey.is_pressed(event):
 		press_stop()
 
 
@@ -248,18 +242,59 @@ func start() -> bool:
 	if Engine.is_editor_hint() or Gateway.server() == null or find_for(self) != self:
 		return false
 	# before the loop moves it: a tool that starts inside of a wall is soon out of it
-	var tool := get_tool()
-	if tool != null:
-		tool.tell_problems()
+	if get_tool() != null:
+		get_tool().tell_problems()
 	var session := Session.new(self)
 	var problems := session.start()
 	_warnings.say_these(problems)
 	if not session.native.is_running():
 		return false
 	_session = session
-	tool_changed.emit(null, session.tool)
+	tool_changed.emit(_last_tool, session.tool)
 	started.emit()
 	return true
+
+
+## Puts a rigid tool, a link at its grip_point, or a body at `at` (its axes, px) into the hand. For
+## another link of the linkage that is held the loop goes on, else it starts anew. A body is frozen
+## for Godot while it is held, and given back with its velocity. False, after an error, when it
+## cannot.
+func take(what: CollisionObject2D, at := Vector2.ZERO) -> bool:
+	var tool := Tools.for_hand(self, what, at)
+	if tool == null:
+		return false
+	_chosen = tool
+	var link := tool as HapticLink2D
+	if is_running() and link == null and tool == _session.tool:
+		return true
+	if is_running() and link != null and link.get_linkage() == _session.linkage:
+		return _session.grab(link)
+	if is_running():
+		_last_tool = _session.tool
+		_session.stop()
+		_session = null
+	Tools.begin(self, tool)
+	var is_taken := start()
+	if not is_taken:
+		Tools.forget(tool)
+	_last_tool = null
+	return is_taken
+
+
+## Takes what can be held and lies at `point` (canvas): a tool, a link, a rigid body; there, unless
+## it is a rigid tool. False when nothing does, and when it cannot. Physics tick only.
+func take_at(point: Vector2) -> bool:
+	return Tools.take_at(self, point)
+
+
+## The body in the hand; null while a tool, a link or nothing is.
+func get_held_body() -> RigidBody2D:
+	return Tools.body_of(_session.tool) if is_running() else null
+
+
+## The run that goes on; null while none does.
+func get_run() -> Session:
+	return _session
 
 
 ## Ends the loop and takes the force off.
@@ -282,13 +317,9 @@ func is_running() -> bool:
 func get_tool() -> HapticTool2D:
 	if _session != null and is_instance_valid(_session.tool):
 		return _session.tool
-	if not is_inside_tree():
-		return null
-	for other: Node in get_tree().get_nodes_in_group(TOOLS):
-		var tool := other as HapticTool2D
-		if tool != null and tool.get_world_2d() == get_world_2d():
-			return tool
-	return null
+	if is_instance_valid(_chosen) and _chosen.is_inside_tree():
+		return _chosen
+	return Tools.find_first(self) if is_inside_tree() else null
 
 
 ## Asks for force. It comes when the handle rests in free space; it clears faults.
@@ -307,12 +338,8 @@ func press_stop() -> void:
 ## the force off. OK, or FAILED after errors that say why. Waits for the device, at most a second.
 func home_device() -> Error:
 	if not is_running():
-		push_error("%s: the world does not run, so no device can be homed. Start it." % get_path())
-		return FAILED
-	var problems := _session.native.home_device()
-	for text: String in problems:
-		push_error("%s: %s" % [get_path(), text])
-	return OK if problems.is_empty() else FAILED
+		return Reports.say(self, ["the world does not run, so no device can be homed. Start it."])
+	return Reports.say(self, _session.native.home_device())
 
 
 ## The hand takes hold of the tool, or lets go.
@@ -386,13 +413,7 @@ func get_statistics() -> Dictionary:
 ## What a haptic step does and what it leaves out for this scene, a line each: the stage, and the
 ## reason when it is left out. Empty when it does not run.
 func get_plan() -> PackedStringArray:
-	var lines := PackedStringArray()
-	for stage: Dictionary in get_statistics().get("plan", []):
-		var reason: String = stage["reason"]
-		lines.append(
-			"%s: %s" % [stage["stage"], "runs" if stage["runs"] else "left out, %s" % reason]
-		)
-	return lines
+	return Reports.plan_of(get_statistics())
 
 
 ## The newest report, in the order of HapticServer.STATE_*, SI and y up; empty when it does not run.
@@ -426,15 +447,8 @@ func get_reach() -> Array[Vector3]:
 ## Draws the neighborhood, or stops it.
 func set_show_neighborhood(shown: bool) -> void:
 	show_neighborhood = shown
-	if Engine.is_editor_hint() or shown == (_view != null):
-		return
-	if shown:
-		_view = NeighborhoodView.new()
-		_view.world = self
-		add_child(_view, false, Node.INTERNAL_MODE_BACK)
-	else:
-		_view.queue_free()
-		_view = null
+	if not Engine.is_editor_hint():
+		_view = NeighborhoodView.shown_for(self, _view, shown)
 
 
 ## Where a hand of kind MOUSE wants the grip, on the canvas (px, rad).
@@ -446,12 +460,8 @@ func aim(point: Vector2, angle: float) -> void:
 ## Writes the recording as CSV, one row a haptic step. OK, or FAILED after an error that says why.
 func save_recording(path: String) -> Error:
 	if not is_running():
-		push_error("%s: there is no recording, because the world does not run." % get_path())
-		return FAILED
-	var problems := _session.native.save_recording(ProjectSettings.globalize_path(path))
-	for text: String in problems:
-		push_error("%s: %s" % [get_path(), text])
-	return OK if problems.is_empty() else FAILED
+		return Reports.say(self, ["there is no recording, because the world does not run."])
+	return Reports.say(self, _session.native.save_recording(ProjectSettings.globalize_path(path)))
 
 
 ## True when nobody is there to move the device: without a display and in lock-step.

@@ -1,7 +1,8 @@
 @tool
 extends Node2D
-## Draws what the haptic loop knows of the scene: where it was looked for, and every convex piece
-## of the last snapshot, in the color of who moves its body.
+## Draws what the haptic loop knows of the scene: the region where it was looked for, around every
+## link of what is held, and every convex piece of the last snapshot, in the color of who moves its
+## body.
 
 const _COLORS: Dictionary[String, Color] = {
 	"fixed": Color(0.45, 0.66, 1.0),
@@ -9,7 +10,9 @@ const _COLORS: Dictionary[String, Color] = {
 	"movable": Color(0.5, 0.9, 0.5),
 }
 const _ONE_WAY := Color(0.9, 0.5, 1.0)
-const _REACH := Color(1.0, 1.0, 1.0, 0.6)
+const _REACH := Color(1.0, 1.0, 1.0, 0.35)
+const _REGION := Color(0.55, 0.62, 0.8, 0.1)
+const _CORNERS := 72
 const _FILL := 0.3
 # of a half-plane's edge, px
 const _HALF_LENGTH := 4000.0
@@ -24,6 +27,19 @@ func _init() -> void:
 	physics_interpolation_mode = Node.PHYSICS_INTERPOLATION_MODE_OFF
 
 
+## The view of `of`, made or removed as `shown` says; `now` is the one that is there.
+static func shown_for(of: HapticWorld2D, now: Node2D, shown: bool) -> Node2D:
+	if shown == (now != null):
+		return now
+	if not shown:
+		now.queue_free()
+		return null
+	var view := new()
+	view.world = of
+	of.add_child(view, false, Node.INTERNAL_MODE_BACK)
+	return view
+
+
 func _process(_delta: float) -> void:
 	queue_redraw()
 
@@ -31,10 +47,38 @@ func _process(_delta: float) -> void:
 func _draw() -> void:
 	if world == null or not world.is_running():
 		return
+	_draw_region(world.get_reach())
 	for piece: Dictionary in world.get_neighborhood():
 		_draw_piece(piece)
-	for disc: Vector3 in world.get_reach():
-		draw_arc(Vector2(disc.x, disc.y), disc.z, 0.0, TAU, 96, _REACH, 1.5, true)
+
+
+# all discs as one region
+func _draw_region(discs: Array[Vector3]) -> void:
+	var regions: Array[PackedVector2Array] = []
+	for disc: Vector3 in discs:
+		var region := _circle(disc)
+		var apart: Array[PackedVector2Array] = []
+		for other: PackedVector2Array in regions:
+			if Geometry2D.intersect_polygons(region, other).is_empty():
+				apart.append(other)
+				continue
+			for part: PackedVector2Array in Geometry2D.merge_polygons(region, other):
+				# holes are looked at from the discs around them
+				if not Geometry2D.is_polygon_clockwise(part):
+					region = part
+		apart.append(region)
+		regions = apart
+	for region: PackedVector2Array in regions:
+		if not Geometry2D.triangulate_polygon(region).is_empty():
+			draw_colored_polygon(region, _REGION)
+		draw_polyline(region + PackedVector2Array([region[0]]), _REACH, 1.5, true)
+
+
+func _circle(disc: Vector3) -> PackedVector2Array:
+	var points := PackedVector2Array()
+	for i: int in _CORNERS:
+		points.append(Vector2(disc.x, disc.y) + Vector2.from_angle(TAU * i / _CORNERS) * disc.z)
+	return points
 
 
 func _draw_piece(piece: Dictionary) -> void:

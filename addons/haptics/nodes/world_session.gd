@@ -9,14 +9,18 @@ const TouchSignals := preload("touch_signals.gd")
 const Reach := preload("../environment/reach.gd")
 const WorldSettings := preload("world_settings.gd")
 const ToolReader := preload("../environment/tool_reader.gd")
+const HeldBody := preload("held_body.gd")
+const LinkageReader := preload("../environment/linkage_reader.gd")
 
 # below this scale of time a scene counts as paused
 const _LEAST_TIME_SCALE := 0.1
 
 ## The native world.
 var native := Gateway.new()
-## What is held.
+## What is held: a rigid tool, or a link of [member linkage].
 var tool: HapticTool2D
+## The linkage whose link is held; null for a rigid tool.
+var linkage: HapticLinkage2D
 ## Its bodies.
 var neighborhood: Neighborhood
 ## Conversion of this world.
@@ -25,6 +29,7 @@ var units: HapticUnits
 var state: PackedFloat64Array
 
 var _world: HapticWorld2D
+var _links: Array[HapticLink2D] = []
 var _cursor: HapticHandCursor2D
 var _is_lockstep := false
 var _is_stalled := false
@@ -54,9 +59,9 @@ func start() -> PackedStringArray:
 	var problems := PackedStringArray()
 	var wrong := native.configure(_world.to_settings())
 	wrong.append_array(native.set_device(_world.device.to_settings(unattended)))
-	wrong.append_array(native.set_tool(ToolReader.describe(tool, units, problems)))
+	wrong.append_array(native.set_tool(_describe_tool(problems)))
 	if not wrong.is_empty():
-		return []
+		return _of_body(wrong + problems)
 	problems = native.start(not _is_lockstep, _world.record_seconds)
 	if not native.is_running():
 		return problems
@@ -65,6 +70,10 @@ func start() -> PackedStringArray:
 	native.refresh()
 	state = native.get_state()
 	_touches = TouchSignals.new(tool)
+	neighborhood.leave_out(get_parts())
+	neighborhood.push_links()
+	if tool is HeldBody:
+		(tool as HeldBody).freeze_body()
 	var limits := _world.safety if _world.safety != null else HapticSafetyLimits.new()
 	_top_speed = limits.max_speed * _world.mapping_scale
 	if _world.device.follows_mouse(unattended):
@@ -80,14 +89,20 @@ func stop() -> void:
 	if _touches != null and is_instance_valid(tool):
 		_touches.finish()
 	neighborhood.clear()
+	native.refresh()
+	state = native.get_state()
 	native.stop()
+	if linkage != null and not _is_gone():
+		linkage.place(native.get_links(), units)
+	_let_go()
 
 
 ## One physics tick, after all else has moved. Returns what is wrong.
 func tick(seconds: float) -> PackedStringArray:
-	if not is_instance_valid(tool) or not tool.is_inside_tree():
+	if _is_gone():
+		var why := _what_is_gone()
 		_world.stop()
-		return ["The tool is gone, so the haptic loop was stopped. Call start() with another tool."]
+		return ["%s, so the haptic loop was stopped. Call start(), or take() another tool." % why]
 	# in lock-step the loop's time is the scene's
 	var scale := 1.0 if _is_lockstep else Engine.time_scale
 	if _stall(scale < _LEAST_TIME_SCALE):
@@ -101,7 +116,7 @@ func tick(seconds: float) -> PackedStringArray:
 		neighborhood.publish(
 			_world.get_world_2d(),
 			_reach_of_tool(seconds / scale),
-			tool.collision_mask,
+			_mask(),
 			seconds,
 			scale,
 			_gravity(scale)
@@ -123,12 +138,17 @@ func tick(seconds: float) -> PackedStringArray:
 func show() -> void:
 	native.refresh()
 	state = native.get_state()
-	if is_instance_valid(tool) and tool.is_inside_tree():
-		tool.global_transform = units.pose_to_canvas(
-			state[Gateway.State.TOOL_X],
-			state[Gateway.State.TOOL_Y],
-			state[Gateway.State.TOOL_ANGLE]
-		)
+	if not _is_gone():
+		if linkage != null:
+			_show_linkage()
+		else:
+			tool.global_transform = units.pose_to_canvas(
+				state[Gateway.State.TOOL_X],
+				state[Gateway.State.TOOL_Y],
+				state[Gateway.State.TOOL_ANGLE]
+			)
+		if tool is HeldBody:
+			(tool as HeldBody).carry()
 		_touches.emit(native.take_events(), native.get_touched(), units, neighborhood.body_of)
 	_emit_faults()
 
@@ -169,6 +189,10 @@ func aim(point: Vector2, angle: float) -> void:
 func _reach_of_tool(tick_seconds: float) -> Array[Vector3]:
 	if not _is_lockstep:
 		_reach.note(Time.get_ticks_usec() * 1e-6)
+	if linkage != null:
+		var distance := func(extent_of_link: float, speed_of_link: float) -> float:
+			return _reach.distance(extent_of_link, speed_of_link, _top_speed, tick_seconds)
+		return LinkageReader.reach(linkage, native.get_links(), units, distance)
 	var place := units.point_to_canvas(state[Gateway.State.TOOL_X], state[Gateway.State.TOOL_Y])
 	var speed := Vector2(state[Gateway.State.VELOCITY_X], state[Gateway.State.VELOCITY_Y]).length()
 	# the report tells the speed of the center of mass
@@ -188,6 +212,117 @@ func _place() -> PackedStringArray:
 	return native.place(wanted)
 
 
+## The hand takes another link of the linkage that is held. False, after errors that say why, when
+## it cannot.
+func grab(link: HapticLink2D) -> bool:
+	var number := _links.find(link)
+	var wrong := native.grab(number, units.local_to_meters(link.grip_point), link.hold_angle)
+	for text: String in wrong:
+		push_error("%s: %s" % [link.get_path(), text])
+	if not wrong.is_empty():
+		return false
+	if _cursor != null:
+		_cursor.let_go()
+	return true
+
+
+## The areas that the loop moves.
+func get_parts() -> Array[RID]:
+	var parts: Array[RID] = []
+	if _is_gone():
+		return parts
+	if _links.is_empty():
+		parts.append(tool.get_rid())
+	for link: HapticLink2D in _links:
+		parts.append(link.get_rid())
+	return parts
+
+
+func _describe_tool(problems: PackedStringArray) -> Dictionary:
+	var link := tool as HapticLink2D
+	linkage = link.get_linkage() if link != null else null
+	if linkage == null:
+		var description := ToolReader.describe(tool, units, problems)
+		if tool is HeldBody:
+			description["start_velocity"] = _velocity_of((tool as HeldBody).body)
+		return description
+	linkage.stop_free()
+	_links = linkage.get_links()
+	return LinkageReader.describe(linkage, link, units, problems)
+
+
+func _show_linkage() -> void:
+	linkage.place(native.get_links(), units)
+	var held := _links[native.get_held_link()]
+	if held == tool:
+		return
+	# contacts are the linkage's: they go on under the name of the link that is held now
+	var was := tool
+	_touches.finish()
+	tool = held
+	_touches = TouchSignals.new(tool)
+	_world.tool_changed.emit(was, tool)
+
+
+# also when links were added or freed: the loop's linkage is another one then
+func _is_gone() -> bool:
+	if not is_instance_valid(tool) or not tool.is_inside_tree():
+		return true
+	if tool is HeldBody and not (tool as HeldBody).is_present():
+		return true
+	if _links.is_empty():
+		return false
+	return not is_instance_valid(linkage) or linkage.get_links() != _links
+
+
+func _what_is_gone() -> String:
+	if is_instance_valid(linkage) and linkage.is_inside_tree():
+		return "%s got, lost or moved a link while it was held" % linkage.get_path()
+	return "The tool is gone"
+
+
+func _mask() -> int:
+	var mask := tool.collision_mask
+	for link: HapticLink2D in _links:
+		mask |= link.collision_mask
+	return mask
+
+
+# what the native side says about a body in the hand; of tools their checks say it
+func _of_body(problems: PackedStringArray) -> PackedStringArray:
+	var told := PackedStringArray()
+	if tool is HeldBody:
+		for text: String in problems:
+			told.append("%s cannot be held: %s" % [(tool as HeldBody).body.get_path(), text])
+	return told
+
+
+# in real time
+func _velocity_of(body: RigidBody2D) -> PackedFloat64Array:
+	if body.freeze:
+		return PackedFloat64Array([0.0, 0.0, 0.0])
+	var scale := 1.0 if _is_lockstep else Engine.time_scale
+	var velocity := units.velocity_to_meters(body.linear_velocity * scale)
+	velocity.append(-body.angular_velocity * scale)
+	return velocity
+
+
+# a body goes on as the loop had it
+func _let_go() -> void:
+	var held := tool as HeldBody if is_instance_valid(tool) else null
+	if held == null or state.is_empty():
+		return
+	held.carry()
+	var scale := 1.0 if _is_lockstep else maxf(Engine.time_scale, _LEAST_TIME_SCALE)
+	var velocity := units.vector_to_canvas(
+		state[Gateway.State.VELOCITY_X], state[Gateway.State.VELOCITY_Y]
+	)
+	held.give_back(
+		velocity * units.pixels_per_meter / scale, -state[Gateway.State.VELOCITY_ANGLE] / scale
+	)
+	held.queue_free()
+
+
 # pauses the output while time nearly stands; says whether it does
 func _stall(stalled: bool) -> bool:
 	if stalled != _is_stalled:
@@ -198,19 +333,7 @@ func _stall(stalled: bool) -> bool:
 
 # the loop runs in real time: velocities of the scene go with its time scale, accelerations twice
 func _gravity(scale: float) -> PackedFloat64Array:
-	var pull := PackedFloat64Array([0.0, 0.0])
-	match _world.gravity_source:
-		HapticWorld2D.GravitySource.PROJECT:
-			var space := _world.get_world_2d().space
-			var strength: float = PhysicsServer2D.area_get_param(
-				space, PhysicsServer2D.AREA_PARAM_GRAVITY
-			)
-			var direction: Vector2 = PhysicsServer2D.area_get_param(
-				space, PhysicsServer2D.AREA_PARAM_GRAVITY_VECTOR
-			)
-			pull = units.velocity_to_meters(strength * direction)
-		HapticWorld2D.GravitySource.CUSTOM:
-			pull = units.vector_to_native(_world.gravity)
+	var pull := WorldSettings.pull_of(_world)
 	pull[0] *= scale * scale
 	pull[1] *= scale * scale
 	return pull

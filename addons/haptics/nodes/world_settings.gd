@@ -54,3 +54,21 @@ static func placement(world: HapticWorld2D) -> Dictionary:
 
 static func _axes(along: float, around: float) -> PackedFloat64Array:
 	return PackedFloat64Array([along, along, around])
+
+
+## Gravity as the native side takes it: x, y (m/s², y up, the world's axes).
+static func pull_of(world: HapticWorld2D) -> PackedFloat64Array:
+	var units := HapticUnits.new(world.pixels_per_meter, world.global_transform)
+	match world.gravity_source:
+		HapticWorld2D.GravitySource.PROJECT:
+			var space := world.get_world_2d().space
+			var strength: float = PhysicsServer2D.area_get_param(
+				space, PhysicsServer2D.AREA_PARAM_GRAVITY
+			)
+			var direction: Vector2 = PhysicsServer2D.area_get_param(
+				space, PhysicsServer2D.AREA_PARAM_GRAVITY_VECTOR
+			)
+			return units.velocity_to_meters(strength * direction)
+		HapticWorld2D.GravitySource.CUSTOM:
+			return units.vector_to_native(world.gravity)
+	return PackedFloat64Array([0.0, 0.0])

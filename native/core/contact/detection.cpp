@@ -174,7 +174,8 @@ Actor actor(const BodySet& set, const BodyBounds& bounds, std::int32_t i, std::i
             tool};
 }
 
-/// Movable neighbors against the others; of two movable ones the smaller id is a.
+/// Movable neighbors against the others; of two movable ones the smaller id is a. What a jointed one touches
+/// is in its mobility already, but for movables that are free.
 void collide_neighbors(const Search& search, const BodySet& neighbors, const BodyBounds& bounds,
                        const Disc* disc, std::int32_t first_index) {
     for (std::int32_t i = 0; i < neighbors.body_count; ++i) {
@@ -185,6 +186,8 @@ void collide_neighbors(const Search& search, const BodySet& neighbors, const Bod
                 continue;
             const Body& one = neighbors.body[static_cast<std::size_t>(i)];
             const Body& other = neighbors.body[static_cast<std::size_t>(k)];
+            if ((one.jointed && (other.jointed || !disc[k].movable)) || (other.jointed && !disc[i].movable))
+                continue;
             const bool first = other.kind != BodyKind::movable || one.id < other.id;
             collide_bodies(search, actor(neighbors, bounds, first ? i : k, first_index, false),
                            actor(neighbors, bounds, first ? k : i, first_index, false));

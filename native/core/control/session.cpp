@@ -108,6 +108,7 @@ Session::Session(const SessionSettings& settings, const Model& model, const Outp
     report_.proxy = data_->pose;
     report_.device = target();
     report_.held = held_;
+    report_linkage();
 }
 
 // in the device's axes; the scene sees forces divided by the scale and motions multiplied by it
@@ -171,14 +172,6 @@ void Session::hold(bool held) {
 void Session::freeze_offset() {
     grab_offset_ = grip_pose(data_->grip, data_->pose) - handle_ - turned();
     parked_ = false;
-}
-
-void Session::grab(const Grip& grip) {
-    if (grip.link < 0 || grip.link >= data_->tool.body_count || !grip.point.allFinite())
-        return;
-    hold(false);
-    next_grip_ = grip;
-    regrab_ = true;
 }
 
 void Session::grasp() {
@@ -508,6 +501,7 @@ void Session::step() {
 }
 
 void Session::write_report(const GateOutput& gate, const Wrench& command) {
+    report_linkage();
     const Mapping& map = settings_.mapping;
     HapticReport& r = report_;
     r.step = data_->step;

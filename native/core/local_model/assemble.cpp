@@ -12,6 +12,8 @@
 // constant bound. Its spring is as stiff as every integrator bears: with m = 1 / (D^-1)_ii the semi-implicit
 // one needs m > (k h^2 + 2 b h) / 4, and k h^2 = b h / 2 = m / 10 stay far below it also where joints couple.
 //
+// A movable that joints tie to others has a full block in the mass matrix, the inverse of its mobility.
+//
 // Only movables that a chain of contacts joins to the tool are in the system: the others touch nothing that
 // the hand can feel, and the environment moves them.
 
@@ -131,7 +133,14 @@ void assemble_mass(const Model& model, Data& data) {
         if (m.row == k_none)
             continue;
         const Body& b = data.neighbors.body[static_cast<std::size_t>(m.body)];
-        set(m.row, b.mass, b.inertia);
+        if (!b.jointed) {
+            set(m.row, b.mass, b.inertia);
+            continue;
+        }
+        const Mat3 mass = b.mobility.inverse();
+        s.mass.block<3, 3>(m.row, m.row) = mass;
+        s.inverse_mass.block<3, 3>(m.row, m.row) = b.mobility;
+        s.external.segment<3>(m.row) = mass * b.acceleration;
     }
     load_velocities(model, data);
 }

@@ -148,7 +148,7 @@ void take_movables(const Neighborhood& n, Data& data) {
         if (slot == data.movable_count) {
             meet(m, seen, data);
             ++data.movable_count;
-        } else {
+        } else if (!seen.jointed) {
             correct(m, seen, n);
         }
         m.body = b;

@@ -189,12 +189,22 @@ void write_tool_force(const Model& model, Data& data) {
         s.bias.setZero();
     s.external.head(s.tool_freedoms) = -s.bias;
     s.tool_weight.setZero(s.tool_freedoms);
-    if (!data.plan.runs(Stage::gravity) || data.gravity.isZero(0.0))
+    if (data.plan.runs(Stage::gravity) && !data.gravity.isZero(0.0)) {
+        s.tool_weight = s.bias;
+        bias_forces(model.tool.linkage, data.linkage, data.gravity, s.bias);
+        s.tool_weight -= s.bias;
+        s.external.head(s.tool_freedoms) = -s.bias;
+    }
+    if (!data.pushed)
         return;
-    s.tool_weight = s.bias;
-    bias_forces(model.tool.linkage, data.linkage, data.gravity, s.bias);
-    s.tool_weight -= s.bias;
-    s.external.head(s.tool_freedoms) = -s.bias;
+    const LinkageModel& linkage = model.tool.linkage;
+    s.bias.setZero();
+    for (int i = 0; i < linkage.link_count; ++i) {
+        const Vec2 center = link_center_pose(linkage, data.linkage, i).head<2>();
+        add_wrench(linkage, data.linkage, i, center, data.push[index(i)], s.bias);
+    }
+    s.tool_weight += s.bias;
+    s.external.head(s.tool_freedoms) += s.bias;
 }
 
 Vec3 joint_spring(const Model& model, const Data& data, int freedom) {

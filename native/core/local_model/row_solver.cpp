@@ -105,8 +105,10 @@ class RowSolver {
         solve(model_.tool.linkage, data_.linkage, s_.has_joint_springs ? r_.factor : data_.factor, s_.bias,
               s_.bias);
         x.head(n) = s_.bias;
-        for (int i = n; i < s_.freedoms; ++i)
-            x[i] *= s_.inverse_mass(i, i);
+        for (int i = n; i < s_.freedoms; i += 3) {
+            const Vec3 push = x.template segment<3>(i);
+            x.template segment<3>(i) = s_.inverse_mass.block<3, 3>(i, i) * push;
+        }
     }
 
     void free_velocity() {

@@ -56,6 +56,7 @@ void reset(const Model& model, Data& data, const LinkageVector& configuration) {
         data.velocity.setZero();
     }
     data.joint = {};
+    data.pushed = false;
     data.grip = model.tool.grip;
     data.patches.count = 0;
     data.touched_count = 0;

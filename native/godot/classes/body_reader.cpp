@@ -193,6 +193,9 @@ BodySpec read_body(const Dictionary& from, const std::string& place, const Surfa
     if (spec.pieces.empty() && problems.none())
         problems.add(place + "shapes is empty. Give the body a collision shape.");
     spec.body.mass = r.number("mass", 0.0);
+    const double density = r.number("density", 0.0);
+    if (density != 0.0)
+        spec.body.mass = density * c.area;
     spec.body.inertia = r.number("inertia", 0.0);
     const bool has_mass = spec.body.kind == BodyKind::movable || spec.body.kind == BodyKind::tool;
     if (has_mass) {

@@ -29,6 +29,19 @@ void BodyRegistry::remove(std::int64_t id) {
     bodies_.erase(id);
 }
 
+bool BodyRegistry::tie(std::int64_t id, std::uint64_t linkage, std::int32_t link) {
+    const auto found = bodies_.find(id);
+    if (found == bodies_.end() || found->second.body.kind != BodyKind::movable)
+        return false;
+    Body& b = found->second.body;
+    b.jointed = true;
+    b.linkage = linkage;
+    b.link = link;
+    // until the linkage is followed
+    b.mobility = Vec3(1.0 / b.mass, 1.0 / b.mass, 1.0 / b.inertia).asDiagonal();
+    return true;
+}
+
 const BodySpec* BodyRegistry::find(std::int64_t id) const {
     const auto found = bodies_.find(id);
     return found == bodies_.end() ? nullptr : &found->second;

@@ -339,6 +339,51 @@ void HapticServer::world_press_stop(int64_t world) {
         w->send(RunnerCommand::stop);
 }
 
+PackedStringArray HapticServer::world_grab(int64_t world, int64_t link, const PackedFloat64Array& point,
+                                           bool pose) {
+    Problems problems;
+    HapticWorld* w = find(world);
+    if (w == nullptr)
+        return problems.to_godot();
+    if (point.size() != 2)
+        problems.add("world_grab() needs 2 numbers for the point (x, y), got " +
+                     std::to_string(point.size()) + ".");
+    else
+        w->grab(link, Vec2(point[0], point[1]), pose, problems);
+    return problems.to_godot();
+}
+
+PackedFloat64Array HapticServer::world_get_links(int64_t world) const {
+    const HapticWorld* w = find(world);
+    if (w == nullptr)
+        return {};
+    PackedFloat64Array out;
+    for (const double number : w->links())
+        out.push_back(number);
+    return out;
+}
+
+PackedStringArray HapticServer::world_start_beside(int64_t world, int64_t host) {
+    Problems problems;
+    HapticWorld* w = find(world);
+    HapticWorld* h = find(host);
+    if (w != nullptr && h != nullptr)
+        w->start_beside(*h, world, problems);
+    return problems.to_godot();
+}
+
+PackedStringArray HapticServer::world_tie_body(int64_t world, int64_t body, int64_t linkage, int64_t link) {
+    Problems problems;
+    if (HapticWorld* w = find(world))
+        w->tie_body(body, linkage, link, problems);
+    return problems.to_godot();
+}
+
+int64_t HapticServer::world_get_held_link(int64_t world) const {
+    const HapticWorld* w = find(world);
+    return w == nullptr ? 0 : w->report().held_link;
+}
+
 PackedStringArray HapticServer::world_home_device(int64_t world) {
     Problems problems;
     if (HapticWorld* w = find(world))
@@ -389,6 +434,12 @@ void HapticServer::_bind_methods() {
     ClassDB::bind_method(D_METHOD("world_arm", "world", "armed"), &HapticServer::world_arm);
     ClassDB::bind_method(D_METHOD("world_set_paused", "world", "paused"), &HapticServer::world_set_paused);
     ClassDB::bind_method(D_METHOD("world_press_stop", "world"), &HapticServer::world_press_stop);
+    ClassDB::bind_method(D_METHOD("world_grab", "world", "link", "point", "pose"), &HapticServer::world_grab);
+    ClassDB::bind_method(D_METHOD("world_get_links", "world"), &HapticServer::world_get_links);
+    ClassDB::bind_method(D_METHOD("world_start_beside", "world", "host"), &HapticServer::world_start_beside);
+    ClassDB::bind_method(D_METHOD("world_tie_body", "world", "body", "linkage", "link"),
+                         &HapticServer::world_tie_body);
+    ClassDB::bind_method(D_METHOD("world_get_held_link", "world"), &HapticServer::world_get_held_link);
     ClassDB::bind_method(D_METHOD("world_home_device", "world"), &HapticServer::world_home_device);
     ClassDB::bind_method(D_METHOD("world_save_recording", "world", "path"),
                          &HapticServer::world_save_recording);

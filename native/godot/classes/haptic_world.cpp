@@ -31,13 +31,23 @@ void HapticWorld::set_tool(const Dictionary& tool, Problems& problems) {
         problems.add("The world runs: stop it before the tool changes.");
         return;
     }
-    DictionaryReader r(tool, "tool.", problems);
     ToolModel t;
+    if (tool.has("links")) {
+        LinkageTool linkage = read_linkage_tool(tool, problems);
+        if (!problems.none())
+            return;
+        tool_ = linkage.tool;
+        tool_start_ = linkage.start;
+        tool_rates_ = linkage.rates;
+        return;
+    }
+    DictionaryReader r(tool, "tool.", problems);
     const BodySpec spec = read_body(r.dictionary("body"), "tool.", neutral_surface(), problems);
     const Vec2 grip = r.vec2("grip_point", Vec2::Zero());
     t.grip.point = grip - spec.center;
     t.grip.pose = r.flag("grip_pose", true);
-    tool_start_ = r.vec3("start", Vec3::Zero());
+    const Pose start = r.vec3("start", Vec3::Zero());
+    const Twist rates = r.vec3("start_velocity", Vec3::Zero());
     r.finish();
     // what follows from these would only repeat them
     if (!problems.none())
@@ -64,6 +74,8 @@ void HapticWorld::set_tool(const Dictionary& tool, Problems& problems) {
         return;
     tool_ = t;
     tool_center_ = spec.center;
+    tool_start_ = node_to_center(start, spec.center);
+    tool_rates_ = rates;
 }
 
 void HapticWorld::set_device(const Dictionary& device, Problems& problems) {
@@ -105,7 +117,7 @@ void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const doub
                          " was left out: it is not registered, or its pose or velocity is not a number.");
         }
     n.sequence = ++sequence_;
-    n.time = realtime_ ? ticks_.tick(runner_->now(), tick) : runner_->now();
+    n.time = realtime_ ? ticks_.tick(now(), tick) : now();
     n.tick = tick;
     n.gravity = gravity;
     n.echo_step = echo_step_;
@@ -127,9 +139,8 @@ void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const doub
         problems.add(message);
 }
 
-void HapticWorld::start(bool realtime, double record_seconds, Problems& problems) {
-    if (running())
-        return;
+// everything but the thread
+void HapticWorld::begin(bool realtime, double record_seconds, Problems& problems) {
     if (!tool_)
         problems.add("The world has no tool. Add a HapticTool2D with a collision shape.");
     if (!device_options_)
@@ -164,8 +175,12 @@ void HapticWorld::start(bool realtime, double record_seconds, Problems& problems
         return;
     }
     OutputGate gate(settings_.safety, device_->kinematics());
-    auto made = std::make_unique<Session>(session, model, gate, device_->port(),
-                                          node_to_center(tool_start_, tool_center_));
+    problems.add(validate(session, model));
+    if (!problems.none()) {
+        device_.reset();
+        return;
+    }
+    auto made = std::make_unique<Session>(session, model, gate, device_->port(), tool_start_);
     if (session.observer.enabled && made->observer() == nullptr) {
         problems.add("The world's observer finds no coupling that holds with a delay of " +
                      std::to_string(1e3 * session.observer.delay) + " ms and the device's mass wrong by " +
@@ -175,6 +190,7 @@ void HapticWorld::start(bool realtime, double record_seconds, Problems& problems
         device_.reset();
         return;
     }
+    made->set_rates(tool_rates_);
     gains_ = made->gains();
     report_ = made->report();
     runner_ = std::make_unique<HapticRunner>(std::move(made), device_->hook());
@@ -196,7 +212,13 @@ void HapticWorld::start(bool realtime, double record_seconds, Problems& problems
     given_report_ = HapticReport{};
     scheduling_ = "lock-step";
     scheduling_details_ = "Lock-step: the haptic steps run on the main thread, at each physics tick.";
-    if (!realtime)
+}
+
+void HapticWorld::start(bool realtime, double record_seconds, Problems& problems) {
+    if (running())
+        return;
+    begin(realtime, record_seconds, problems);
+    if (!running() || !realtime)
         return;
     steal_.begin();
     LoopOptions options;
@@ -213,6 +235,13 @@ void HapticWorld::start(bool realtime, double record_seconds, Problems& problems
 }
 
 void HapticWorld::stop() {
+    while (!guests_.empty())
+        guests_.back()->stop();
+    if (host_ != nullptr) {
+        host_->runner_->detach(*runner_);
+        std::erase(host_->guests_, this);
+        host_ = nullptr;
+    }
     if (runner_ != nullptr) {
         runner_->stop();
         refresh();
@@ -222,7 +251,7 @@ void HapticWorld::stop() {
 }
 
 int HapticWorld::advance(double seconds) {
-    if (!running() || realtime_ || !std::isfinite(seconds) || seconds <= 0.0)
+    if (!running() || realtime_ || host_ != nullptr || !std::isfinite(seconds) || seconds <= 0.0)
         return 0;
     return runner_->advance(seconds);
 }
@@ -245,6 +274,10 @@ std::vector<GivenImpulse> HapticWorld::take_impulses() {
         const MovableBelief& m = report_.movable[static_cast<std::size_t>(i)];
         const auto id = static_cast<std::int64_t>(m.id);
         Taken& taken = taken_[id];
+        // a link has it already
+        const BodySpec* spec = bodies_.find(id);
+        if (spec != nullptr && spec->body.jointed)
+            continue;
         if (taken.epoch != m.epoch)
             taken = {m.epoch, Wrench::Zero()};
         const Wrench delta = m.given - taken.given;

@@ -10,6 +10,7 @@
 #include <haptics/realtime/loop_thread.hpp>
 #include <haptics/realtime/step_recorder.hpp>
 
+#include <array>
 #include <atomic>
 #include <memory>
 #include <string>
@@ -62,6 +63,18 @@ class HapticRunner final : public LoopStep {
     /// Owner: the clutch, mapping and turn wanted from now on.
     void place(const HandPlacement& placement) noexcept { placements_.try_write(placement); }
 
+    /// Owner: the hand takes hold elsewhere (Session::grab). Of several before a step the last counts.
+    void grab(const Grip& grip) { grips_.try_write(grip); }
+
+    /// Linkages that nobody holds and that run beside the tool.
+    static constexpr int k_max_guests = 8;
+    /// Owner: from the next step on, every step of this runner steps `guest` too, which neither has a thread
+    /// nor is advanced; `id` > 0 is how bodies name it (Body::linkage). Both have the same step. False when
+    /// all places are taken.
+    bool attach(HapticRunner& guest, std::uint64_t id) noexcept;
+    /// Owner: once this returns nothing steps `guest`. Waits at most for the step that runs now.
+    void detach(HapticRunner& guest) noexcept;
+
     /// Owner: the newest report.
     [[nodiscard]] const HapticReport& latest_report() noexcept { return reports_.try_read().value; }
     /// Owner: events since the last call, oldest first.
@@ -95,6 +108,8 @@ class HapticRunner final : public LoopStep {
     void loop_ends() noexcept override;
 
   private:
+    void step_all(const StepTime& time);
+    void take_scene(const StepTime& time) noexcept;
     void take_commands() noexcept;
     void watch_scene(double time) noexcept;
     void publish_results() noexcept;
@@ -103,9 +118,18 @@ class HapticRunner final : public LoopStep {
     StepHook* hook_;
     LatestValue<Neighborhood> neighborhoods_;
     LatestValue<HapticReport> reports_;
+    LatestValue<Grip> grips_;
     EventQueue<ContactEvent, 1024> events_;
     EventQueue<RunnerCommand, 64> commands_;
     LatestValue<HandPlacement> placements_;
+    struct Guest {
+        std::atomic<HapticRunner*> runner{nullptr};
+        std::uint64_t id{0}; // written while `runner` is null
+    };
+    std::array<Guest, k_max_guests> guests_;
+    bool is_guest_{false};
+    // odd while a step runs
+    std::atomic<std::uint64_t> turn_{0};
     std::unique_ptr<StepRecorder> recorder_;
     std::vector<double> rows_;
     std::size_t most_rows_{0};

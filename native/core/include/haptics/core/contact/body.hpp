@@ -30,6 +30,17 @@ struct Body {
     /// Mass in kg and moment of inertia about the center of mass in kg m^2 (movable bodies only, > 0).
     double mass{0.0};
     double inertia{0.0};
+    /// A movable body that joints tie to others, a link of a linkage that runs beside the tool (see
+    /// free_linkage.hpp): `mobility` and `acceleration` count, not mass and inertia. It touches the tool and
+    /// free movables; what else it touches is in the two.
+    bool jointed{false};
+    /// Which linkage (the number it was attached with) and which link of it.
+    std::uint64_t linkage{0};
+    std::int32_t link{0};
+    /// Velocity (m/s, m/s, rad/s) of the center of mass for a unit impulse on it; positive definite.
+    Mat3 mobility{Mat3::Zero()};
+    /// Acceleration that the tool's contacts add to, m/s^2, m/s^2, rad/s^2.
+    Twist acceleration{0.0, 0.0, 0.0};
     Surface surface;
     /// Range of this body's pieces in the piece array.
     std::int32_t first_piece{0};

@@ -2,6 +2,7 @@
 /// What a haptic step leaves behind for the scene: the latest values, counters that only grow, no pointers.
 
 #include <haptics/core/contact/contact.hpp>
+#include <haptics/core/dynamics/linkage_spec.hpp>
 #include <haptics/core/local_model/movable.hpp>
 #include <haptics/core/safety/output_gate.hpp>
 #include <haptics/core/types.hpp>
@@ -56,6 +57,12 @@ struct HapticReport {
     Twist velocity{0.0, 0.0, 0.0};
     /// Part of the force that the hand has of the tool: 0 while a clutch leaves the handle free.
     double hand_share{1.0};
+    /// Coordinates of a linkage and their rates (rad or m; a floating base first has the pose of its center
+    /// of mass), and the link that is held; no freedoms for a rigid tool.
+    std::int32_t freedoms{0};
+    std::int32_t held_link{0};
+    std::array<double, k_max_freedoms> configuration{};
+    std::array<double, k_max_freedoms> configuration_rate{};
     /// Force that left the output gate for the hand (scene axes), N, N, N m.
     Wrench force{0.0, 0.0, 0.0};
     /// The part of it that holds the device's own weight, friction and inertia.

@@ -10,6 +10,7 @@
 #include <haptics/core/control/placement.hpp>
 #include <haptics/core/control/report.hpp>
 #include <haptics/core/control/shared_motion.hpp>
+#include <haptics/core/local_model/free_linkage.hpp>
 #include <haptics/core/local_model/local_model.hpp>
 #include <haptics/core/safety/energy_ledger.hpp>
 #include <haptics/core/safety/output_gate.hpp>
@@ -101,6 +102,14 @@ class Session {
     /// The hand takes hold elsewhere: at once when nothing is held, else after letting go. A link that the
     /// tool does not have is ignored.
     void grab(const Grip& grip);
+    /// Coordinates of the tool go on at these rates (a start in motion); ignored unless there is one for each
+    /// freedom.
+    void set_rates(const LinkageVector& rates);
+    /// Before a step: the bodies that are links of `linkage`, number `id`, are where it has them. Both have
+    /// the same step.
+    void follow(Session& linkage, std::uint64_t id);
+    /// After that step, before the linkage's own: hands it over what the tool gave to its links.
+    void push(Session& linkage, std::uint64_t id);
     /// Asks the gate to arm, and to forget the faults latched now; the answer is in the next report's `armed`
     /// and in `arm_result()`.
     void arm();
@@ -157,6 +166,7 @@ class Session {
     void share(HandInput& hand);
     void run_model();
     [[nodiscard]] Wrench command();
+    void report_linkage();
     void write_report(const GateOutput& gate, const Wrench& command);
 
     SessionSettings settings_;

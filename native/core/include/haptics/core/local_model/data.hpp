@@ -48,6 +48,10 @@ struct Data {
     /// Most that the kinetic energy of a linkage may be, J (see proxy.cpp).
     double energy_budget{0.0};
     Slots<JointMemory, k_max_freedoms> joint;
+    /// Wrenches on the links of the tool from outside of the model (scene axes, about each center of mass, N,
+    /// N, N m), while `pushed`; see free_linkage.hpp.
+    bool pushed{false};
+    std::array<Wrench, k_max_links> push;
     /// Where the tool is held.
     Grip grip;
     /// The tool's shapes at the present poses and the neighbors at their extrapolated poses.

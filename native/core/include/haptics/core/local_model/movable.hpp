@@ -41,6 +41,8 @@ struct MovableState {
     Pose pending_pose{0.0, 0.0, 0.0};
     Twist pending_velocity{0.0, 0.0, 0.0};
     double blend_left{0.0};
+    /// Of `given`, what the linkage of a jointed body has received.
+    Wrench passed{0.0, 0.0, 0.0};
     /// Last step in which `given` changed.
     std::uint64_t given_step{0};
 };

@@ -37,6 +37,9 @@ class BodyRegistry {
     /// Adds or replaces.
     void set(std::int64_t id, BodySpec spec);
     void remove(std::int64_t id);
+    /// A movable body is that link of a linkage beside the tool from now on (Body::linkage). False when it is
+    /// unknown or cannot be pushed.
+    bool tie(std::int64_t id, std::uint64_t linkage, std::int32_t link);
     [[nodiscard]] const BodySpec* find(std::int64_t id) const;
     [[nodiscard]] std::size_t size() const { return bodies_.size(); }
     void clear() { bodies_.clear(); }

@@ -102,6 +102,12 @@ class HapticServer : public godot::Object {
     void world_arm(int64_t world, bool armed);
     void world_set_paused(int64_t world, bool paused);
     void world_press_stop(int64_t world);
+    godot::PackedStringArray world_grab(int64_t world, int64_t link, const godot::PackedFloat64Array& point,
+                                        bool pose);
+    godot::PackedFloat64Array world_get_links(int64_t world) const;
+    int64_t world_get_held_link(int64_t world) const;
+    godot::PackedStringArray world_start_beside(int64_t world, int64_t host);
+    godot::PackedStringArray world_tie_body(int64_t world, int64_t body, int64_t linkage, int64_t link);
     godot::PackedStringArray world_home_device(int64_t world);
     godot::PackedStringArray world_save_recording(int64_t world, const godot::String& path);
 

@@ -2,6 +2,7 @@
 /// One haptic world of the server: settings, bodies, device and the runner. Main thread only.
 
 #include <haptics/classes/body_registry.hpp>
+#include <haptics/classes/linkage_reader.hpp>
 #include <haptics/classes/world_device.hpp>
 #include <haptics/classes/world_settings.hpp>
 #include <haptics/realtime/haptic_runner.hpp>
@@ -62,12 +63,25 @@ class HapticWorld {
     /// The device's handle is in its home pose now. Waits for a real device's answer, at most a second.
     void home_device(Problems& problems);
     void save_recording(const std::string& path, Problems& problems);
-    /// Where the simulated hand wants the grip (scene frame), for a ghost cursor.
-    [[nodiscard]] const Vec2& tool_center() const { return tool_center_; }
+    /// The hand takes hold of a linkage elsewhere: `point` in the axes of the link's node, m.
+    void grab(std::int64_t link, const Vec2& point, bool pose, Problems& problems);
+    /// Of every link of a linkage, in the order of its links: pose of its node (x, y, angle), velocity of its
+    /// center of mass (x, y) and angular velocity, coordinate and its rate. Empty for a rigid tool.
+    [[nodiscard]] std::vector<double> links() const;
+    static constexpr std::size_t k_link_state = 8;
+    /// For a linkage: starts it beside `host`, whose loop then steps it; `id` is this world's number. It
+    /// stops when `host` does.
+    void start_beside(HapticWorld& host, std::int64_t id, Problems& problems);
+    /// A body is link `link` of the linkage that runs beside this world as number `linkage`.
+    void tie_body(std::int64_t body, std::int64_t linkage, std::int64_t link, Problems& problems);
+    /// Center of mass of the tool, or of the link that is held, in the axes of its node, m.
+    [[nodiscard]] Vec2 tool_center() const;
     [[nodiscard]] const WorldSettings& settings() const { return settings_; }
     [[nodiscard]] const CouplingGains& gains() const { return gains_; }
 
   private:
+    void begin(bool realtime, double record_seconds, Problems& problems);
+    [[nodiscard]] double now() const { return (host_ != nullptr ? host_->runner_ : runner_)->now(); }
     void note_figures(const HapticReport& r);
     void note_overflow(Problems& problems);
     [[nodiscard]] godot::Dictionary neighborhood_figures() const;
@@ -75,11 +89,16 @@ class HapticWorld {
     WorldSettings settings_;
     std::optional<ToolModel> tool_;
     Vec2 tool_center_{0.0, 0.0};
-    Pose tool_start_{0.0, 0.0, 0.0};
+    LinkageVector tool_start_;
+    /// Rates of the coordinates at the start; empty for a start at rest.
+    LinkageVector tool_rates_;
     std::optional<DeviceOptions> device_options_;
     BodyRegistry bodies_;
     std::unique_ptr<WorldDevice> device_;
     std::unique_ptr<HapticRunner> runner_;
+    /// The world whose loop steps this one, and those that this one's loop steps.
+    HapticWorld* host_{nullptr};
+    std::vector<HapticWorld*> guests_;
     HostSteal steal_;
     TickClock ticks_;
     bool realtime_{false};

@@ -1,0 +1,172 @@
+@tool
+extends RefCounted
+## A linkage that nobody holds: the same native dynamics and contacts as when it is held.
+##
+## While the world runs, its loop steps the linkage too, and the tool and the links meet at every
+## haptic step. Else the physics tick runs the steps. Walls and objects it meets as a tool does;
+## other linkages that nobody holds are bodies that move and do not yield.
+
+const Gateway := preload("gateway.gd")
+const Neighborhood := preload("../environment/neighborhood.gd")
+const LinkageReader := preload("../environment/linkage_reader.gd")
+const WorldSettings := preload("world_settings.gd")
+const Reach := preload("../environment/reach.gd")
+
+# a link may get so fast until the next tick, m/s
+const _TOP_SPEED := 2.0
+# a scene that is slower counts as this slow
+const _LEAST_TIME_SCALE := 0.1
+# changes that have no signal are looked for in so many ticks
+const _TICKS_TO_LOOK := 30
+
+var _native := Gateway.new()
+var _linkage: HapticLinkage2D
+var _links: Array[HapticLink2D] = []
+var _world: HapticWorld2D
+var _units: HapticUnits
+var _neighborhood: Neighborhood
+var _reach := Reach.new()
+var _parts: Array[RID] = []
+var _states: PackedFloat64Array = []
+var _host: Gateway
+var _is_alone := false
+var _at := Transform2D.IDENTITY
+var _signature := 0
+var _ticks := 0
+
+
+func _init(linkage: HapticLinkage2D, world: HapticWorld2D) -> void:
+	_linkage = linkage
+	_world = world
+	_units = HapticUnits.new(world.pixels_per_meter, world.global_transform)
+	_neighborhood = Neighborhood.new(_native, _units)
+	_neighborhood.default_surface = world.default_surface
+
+
+## False when it cannot move; its checks say why.
+func start() -> bool:
+	_links = _linkage.get_links()
+	if _links.is_empty() or not _native.is_valid():
+		return false
+	var settings := _world.to_settings()
+	(
+		settings
+		. merge(
+			{
+				"coupling": "virtual_coupling",
+				"observer": false,
+				"hold_at_start": false,
+				"arm_at_start": false,
+			},
+			true
+		)
+	)
+	var problems := PackedStringArray()
+	var wrong := _native.configure(settings)
+	wrong.append_array(_native.set_device({"kind": "simulated_pantograph"}))
+	wrong.append_array(
+		_native.set_tool(LinkageReader.describe(_linkage, _links[-1], _units, problems))
+	)
+	if not wrong.is_empty():
+		return false
+	_host = _host_now()
+	if _host == null or not _native.start_beside(_host).is_empty():
+		_is_alone = true
+		_native.start(false, 0.0)
+	_native.refresh()
+	_states = _native.get_links()
+	for link: HapticLink2D in _links:
+		_parts.append(link.get_rid())
+	_at = _linkage.global_transform
+	_signature = LinkageReader.signature(_linkage, _units)
+	return _native.is_running()
+
+
+## True while it still is the linkage that was read.
+func is_current() -> bool:
+	if not _native.is_running() or not is_instance_valid(_world) or not _world.is_inside_tree():
+		return false
+	if _host_now() != _host:
+		return false
+	if _linkage.get_links() != _links or _linkage.global_transform != _at:
+		return false
+	_ticks += 1
+	return _ticks % _TICKS_TO_LOOK != 0 or LinkageReader.signature(_linkage, _units) == _signature
+
+
+func _host_now() -> Gateway:
+	var run := _world.get_run()
+	return run.native if run != null else null
+
+
+## True while it can be shown.
+func is_current_run() -> bool:
+	return _native.is_running() and _linkage.get_links() == _links
+
+
+## One physics tick of so many seconds.
+func tick(seconds: float) -> void:
+	_native.refresh()
+	var impulses := _native.take_impulses()
+	var mask := 0
+	for link: HapticLink2D in _links:
+		mask |= link.collision_mask
+	var distance := func(extent: float, speed: float) -> float:
+		return _reach.distance(extent, speed, _TOP_SPEED, seconds)
+	# the loop knows of the contact with the tool itself
+	_neighborhood.leave_out(_parts if _is_alone else _parts + _world.get_run().get_parts())
+	# the loop runs in real time: velocities of the scene go with its time scale, accelerations twice
+	var scale := 1.0
+	if not _is_alone and _world.mode == HapticWorld2D.Mode.REALTIME:
+		scale = maxf(Engine.time_scale, _LEAST_TIME_SCALE)
+	var pull := WorldSettings.pull_of(_world)
+	_neighborhood.publish(
+		_world.get_world_2d(),
+		LinkageReader.reach(_linkage, _states, _units, distance),
+		mask,
+		seconds,
+		scale,
+		PackedFloat64Array([pull[0] * scale * scale, pull[1] * scale * scale])
+	)
+	_neighborhood.give(impulses, scale)
+	if _is_alone:
+		_native.advance(seconds)
+	show()
+
+
+## Stands still while the game is paused.
+func set_paused(paused: bool) -> void:
+	if _native.is_running():
+		_native.set_paused(paused)
+
+
+## Brings the links to where the native side has them.
+func show() -> void:
+	_native.refresh()
+	_states = _native.get_links()
+	_linkage.place(_states, _units)
+
+
+## Ends it; the links stay where the native side had them last.
+func stop() -> void:
+	_native.stop()
+	# on the way out of the tree links go first
+	if _linkage.get_links() == _links and _links[0].is_inside_tree():
+		_linkage.place(_native.get_links(), _units)
+	_neighborhood.clear()
+
+
+## Pose of the node of `link`, velocity of its center of mass: SI, y up.
+func state_of(link: HapticLink2D) -> PackedFloat64Array:
+	var at := _links.find(link) * LinkageReader.STATE
+	return _states.slice(at, at + 6)
+
+
+## True while the world's loop steps it.
+func is_beside_tool() -> bool:
+	return not _is_alone and _native.is_running()
+
+
+## Body `number` of the world is `link`.
+func tie(native: Gateway, number: int, link: HapticLink2D) -> void:
+	native.tie_body(number, _native, _links.find(link))

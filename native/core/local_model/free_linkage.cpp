@@ -1,0 +1,171 @@
+// A linkage beside the tool.
+//
+// One step of length h: the tool's step solves its contacts with the links together with its own motion,
+// taking each link for a body with the mobility W and the acceleration a below; then the wrenches P that it
+// gave act on the linkage during the linkage's own step. With D the mass matrix of the linkage, R = J the
+// three rows of the link's center of mass, f all forces on the joints but P, and springs and contacts with
+// stiffness K_j and damping B_j along rows r_j, that step is backward Euler (integrate.cpp):
+//     A (v+ - v) = h (f - h sum K_j r_j' r_j v) + h R' P,   A = D + sum (h B_j + h^2 K_j) r_j' r_j,
+// so the link's center of mass moves by
+//     W = R A^-1 R',   a = R A^-1 (f - h sum K_j r_j' r_j v) + J' v
+// and what the tool's step foresees is what the linkage then does, as long as the same contacts press and
+// only one link is touched; with several, the tool foresees each without the others. Rows are those of the
+// last step that pressed or stuck; what slid goes on with the force it had. Contacts of the linkage with
+// movables are left out: the tool's model has these itself.
+
+#include <haptics/core/dynamics/jacobian.hpp>
+#include <haptics/core/dynamics/kinematics.hpp>
+#include <haptics/core/dynamics/mass_matrix.hpp>
+#include <haptics/core/local_model/free_linkage.hpp>
+
+#include <algorithm>
+
+#include "internal.hpp"
+
+namespace haptics {
+namespace {
+
+// what is stiffer is as good as rigid within a step, N/m and N s/m
+constexpr double k_rigid = 1e9;
+
+// Joints may leave a link without any freedom along some line, and the solvers need a mass for it: there it
+// yields by a millionth of what it would without joints.
+constexpr double k_least = 1e-6;
+
+struct Yielding {
+    LinkageMatrix matrix;
+    LinkageVector force;
+    const LinkageVector& velocity;
+    double dt;
+
+    void spring(const LinkageVector& row, double stiffness, double damping, double rate) {
+        const double k = std::min(stiffness, k_rigid);
+        matrix.noalias() += dt * (dt * k + std::min(damping, k_rigid)) * row * row.transpose();
+        force -= dt * k * rate * row;
+    }
+};
+
+bool with_movable(const Data& data, const PatchRow& t) {
+    if (t.patch < 0)
+        return false;
+    const Patch& p = data.patches.patch[static_cast<std::size_t>(t.patch)];
+    const std::int32_t links = data.tool.body_count;
+    if (p.body_a >= links)
+        return true;
+    return p.body_b >= links &&
+           data.neighbors.body[static_cast<std::size_t>(p.body_b - links)].kind == BodyKind::movable;
+}
+
+void add_joint_springs(const LinkageModel& linkage, const LinkageData& state, Yielding& y) {
+    for (int i = linkage.floating ? 3 : 0; i < linkage.freedoms; ++i) {
+        const JointSpec& joint = linkage.passive[i];
+        if (joint.spring_stiffness <= 0.0 && joint.damping <= 0.0)
+            continue;
+        y.force(i) -= joint.spring_stiffness * (state.position(i) - joint.spring_rest) +
+                      joint.damping * state.velocity(i);
+        y.spring(LinkageVector::Unit(linkage.freedoms, i), joint.spring_stiffness, joint.damping,
+                 state.velocity(i));
+    }
+}
+
+void add_rows(const Data& data, Yielding& y) {
+    const ContactSystem& s = data.system;
+    const int n = s.tool_freedoms;
+    LinkageVector row(n);
+    for (int i = 0; i < s.patches; ++i) {
+        const PatchRow& t = s.row[static_cast<std::size_t>(i)];
+        if (with_movable(data, t))
+            continue;
+        for (int k = t.first_point; k < t.first_point + t.point_count; ++k) {
+            const PointRow& p = s.point[static_cast<std::size_t>(k)];
+            if (p.force <= 0.0)
+                continue;
+            row = s.normal_rows.row(k).head(n).transpose();
+            y.force += p.force * row;
+            y.spring(row, p.stiffness, p.damping, row.dot(y.velocity) - p.drive);
+        }
+        if (t.force == 0.0)
+            continue;
+        row = s.tangent_rows.row(i).head(n).transpose();
+        y.force += t.force * row;
+        if (t.mode == FrictionMode::stick)
+            y.spring(row, t.stiffness, t.damping, row.dot(y.velocity) - t.drive);
+    }
+}
+
+} // namespace
+
+LinkResponse link_response(const Model& model, const Data& data, int link, double dt) {
+    LinkResponse out;
+    const LinkageModel& linkage = model.tool.linkage;
+    if (!model.tool.articulated || link < 0 || link >= linkage.link_count || !(dt > 0.0))
+        return out;
+    Yielding y{{}, {}, data.linkage.velocity, dt};
+    mass_matrix(linkage, data.linkage, y.matrix);
+    bias_forces(linkage, data.linkage, data.gravity, y.force);
+    y.force = -y.force;
+    if (linkage.has_passive)
+        add_joint_springs(linkage, data.linkage, y);
+    if (data.step > 0)
+        add_rows(data, y);
+
+    const Vec2 center = link_center_pose(linkage, data.linkage, link).head<2>();
+    PointJacobian rows;
+    point_jacobian(linkage, data.linkage, link, center, rows);
+    const Eigen::LLT<Eigen::Ref<LinkageMatrix>> factor(y.matrix);
+    for (int i = 0; i < 3; ++i) {
+        LinkageVector column = rows.row(i).transpose();
+        factor.solveInPlace(column);
+        out.mobility.col(i) = rows.lazyProduct(column);
+    }
+    out.mobility = 0.5 * (out.mobility + out.mobility.transpose()).eval();
+    factor.solveInPlace(y.force);
+    out.acceleration = rows.lazyProduct(y.force);
+    if (linkage.coriolis)
+        out.acceleration += point_bias(linkage, data.linkage, link, center);
+    return out;
+}
+
+void push_link(Data& data, int link, const Wrench& wrench) {
+    if (!data.pushed)
+        data.push.fill(Wrench::Zero());
+    data.pushed = true;
+    data.push[static_cast<std::size_t>(link)] = wrench;
+}
+
+void follow_linkage(Data& data, std::uint64_t id, const Model& model, const Data& linkage, double dt) {
+    for (std::int32_t i = 0; i < data.movable_count; ++i) {
+        MovableState& m = data.movable[static_cast<std::size_t>(i)];
+        if (m.body < 0)
+            continue;
+        Body& b = data.neighbors.body[static_cast<std::size_t>(m.body)];
+        if (!b.jointed || b.linkage != id || b.link < 0 || b.link >= linkage.tool.body_count)
+            continue;
+        const Body& link = linkage.tool.body[static_cast<std::size_t>(b.link)];
+        m.belief.pose = b.pose = link.pose;
+        m.belief.velocity = b.velocity = link.velocity;
+        m.blend_left = 0.0;
+        const LinkResponse response = link_response(model, linkage, b.link, dt);
+        b.mobility = response.mobility;
+        b.mobility.diagonal() += k_least * Vec3(1.0 / b.mass, 1.0 / b.mass, 1.0 / b.inertia);
+        b.acceleration = response.acceleration;
+    }
+}
+
+void push_linkage(Data& data, std::uint64_t id, Data& linkage, double dt) {
+    linkage.pushed = false;
+    for (std::int32_t i = 0; i < data.movable_count; ++i) {
+        MovableState& m = data.movable[static_cast<std::size_t>(i)];
+        if (m.body < 0)
+            continue;
+        const Body& b = data.neighbors.body[static_cast<std::size_t>(m.body)];
+        if (!b.jointed || b.linkage != id || b.link < 0 || b.link >= linkage.tool.body_count)
+            continue;
+        const Wrench given = m.belief.given - m.passed;
+        m.passed = m.belief.given;
+        if (!given.isZero(0.0))
+            push_link(linkage, b.link, given / dt);
+    }
+}
+
+} // namespace haptics

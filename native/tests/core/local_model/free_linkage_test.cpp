@@ -1,0 +1,203 @@
+// A linkage beside the tool: what the tool's step foresees of it, and what the two do together.
+
+#include <haptics/core/dynamics/energy.hpp>
+#include <haptics/core/dynamics/kinematics.hpp>
+#include <haptics/core/local_model/free_linkage.hpp>
+#include <haptics/core/local_model/local_model.hpp>
+#include <haptics/shared/linkage_tools.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace haptics;
+
+namespace {
+
+constexpr double k_step = 0.001;
+constexpr std::uint64_t k_number = 5;
+
+LinkageVector coordinates(std::initializer_list<double> values) {
+    LinkageVector v(static_cast<Eigen::Index>(values.size()));
+    std::copy(values.begin(), values.end(), v.data());
+    return v;
+}
+
+// a linkage that runs beside a tool, whose neighbors its links are
+struct Beside {
+    Beside(const Model& tool_model, const Pose& start, const LinkageSpec& spec, const LinkageVector& at,
+           const Surface& surface)
+        : tool(tool_model)
+        , linkage(shared::linkage_tool(spec))
+        , data(std::make_unique<Data>())
+        , links(std::make_unique<Data>()) {
+        reset(tool, *data, start);
+        reset(linkage, *links, at);
+        auto n = std::make_unique<Neighborhood>();
+        n->sequence = 1;
+        for (int i = 0; i < linkage.tool.linkage.link_count; ++i) {
+            const Body& from = links->tool.body[static_cast<std::size_t>(i)];
+            Body& b = n->bodies.body[static_cast<std::size_t>(shared::add_body(
+                n->bodies, static_cast<std::uint64_t>(i + 1), BodyKind::movable, surface, from.pose))];
+            b.mass = linkage.tool.linkage.link[i].mass;
+            b.inertia = linkage.tool.linkage.link[i].inertia;
+            b.jointed = true;
+            b.linkage = k_number;
+            b.link = i;
+            b.mobility = Mat3::Identity();
+            shared::add_piece(n->bodies,
+                              links->tool.piece[static_cast<std::size_t>(from.first_piece)].convex);
+        }
+        take_neighborhood(*n, *data);
+        take_neighborhood(*shared::empty_world(), *links);
+    }
+    void run(const HandInput& hand = {}) {
+        follow_linkage(*data, k_number, linkage, *links, k_step);
+        step(tool, *data, hand, k_step, out);
+        push_linkage(*data, k_number, *links, k_step);
+        step(linkage, *links, HandInput{}, k_step, links_out);
+    }
+    Model tool;
+    Model linkage;
+    std::unique_ptr<Data> data;
+    std::unique_ptr<Data> links;
+    StepOutput out;
+    StepOutput links_out;
+};
+
+} // namespace
+
+TEST_CASE("what the tool's step foresees of a link is what the linkage does") {
+    LinkageSpec spec = shared::chain(3);
+    spec.links[0].joint.spring_stiffness = 0.05;
+    spec.links[0].joint.damping = 0.001;
+    spec.links[2].joint.spring_stiffness = 0.02;
+    const Model model = shared::linkage_tool(spec);
+    for (int link = 0; link < 3; ++link) {
+        CAPTURE(link);
+        auto data = std::make_unique<Data>();
+        reset(model, *data, coordinates({0.4, 0.7, -0.3}));
+        take_neighborhood(*shared::empty_world(Vec2(0.0, -9.81)), *data);
+        StepOutput out;
+        for (int i = 0; i < 5; ++i)
+            step(model, *data, HandInput{}, k_step, out);
+        const LinkResponse r = link_response(model, *data, link, k_step);
+        const Twist before = data->tool.body[static_cast<std::size_t>(link)].velocity;
+        const Wrench push(0.8, -1.3, 0.01);
+        push_link(*data, link, push);
+        step(model, *data, HandInput{}, k_step, out);
+        const Twist change = data->tool.body[static_cast<std::size_t>(link)].velocity - before;
+        const Twist foreseen = k_step * (r.mobility * push + r.acceleration);
+        // J and the Coriolis terms change during the step
+        CHECK((change - foreseen).norm() < 1e-2 * change.norm());
+        CHECK(change.norm() > 1e-3);
+    }
+}
+
+TEST_CASE("a tool that hits a door leaves with what the angular momentum about the hinge says") {
+    Surface surface = shared::paper_surface();
+    for (const double e : {0.0, 0.5, 1.0})
+        for (const double at : {0.06, 0.18}) {
+            CAPTURE(e);
+            CAPTURE(at);
+            surface.restitution = e;
+            // the door lies along x; the tool comes from above, its lower edge 1 mm over the door
+            Beside both(shared::box_tool(0.3), Pose(at, 0.016, 0.0), shared::door(), coordinates({0.0}),
+                        surface);
+            // a narrow tool, so that the lever is known
+            both.data->tool.piece[0].convex = make_disc(Vec2::Zero(), 0.01);
+            both.data->velocity = Twist(0.0, -0.5, 0.0);
+            const double lever = at;
+            const double inertia = 0.3 * 0.2 * 0.2 / 3.0;
+            for (int i = 0; i < 6; ++i)
+                both.run();
+            const double before = -0.5;
+            // -m l v = m l v' .. along the normal (0, 1): v' - l w' = -e (v - 0), m l (v - v') = I w' (w
+            // counts up)
+            const double share = inertia / (inertia + 0.3 * lever * lever);
+            const double after = before - (1.0 + e) * before * share;
+            const double turning = 0.3 * lever * (before - after) / inertia;
+            CHECK(both.data->velocity.y() == doctest::Approx(after).epsilon(0.02));
+            CHECK(both.links->linkage.velocity(0) == doctest::Approx(turning).epsilon(0.02));
+        }
+}
+
+TEST_CASE(
+    "a tool leaning on a door that leans on its stop gets its push back, at once and without a tremor") {
+    LinkageSpec spec = shared::door();
+    spec.links[0].joint.lower_limit = -0.05;
+    Beside both(shared::box_tool(0.3), Pose(0.15, 0.016, 0.0), spec, coordinates({0.0}),
+                shared::paper_surface());
+    both.data->tool.piece[0].convex = make_disc(Vec2::Zero(), 0.01);
+    HandInput hand;
+    hand.held = true;
+    hand.force = Wrench(0.0, -2.0, 0.0);
+    // or the tool slides off
+    hand.stiffness = Vec3(1000.0, 0.0, 0.0);
+    hand.damping = Vec3(20.0, 0.0, 0.0);
+    hand.target = Pose(0.15, 0.0, 0.0);
+    for (int i = 0; i < 1500; ++i)
+        both.run(hand);
+    double least = 1e9;
+    double most = -1e9;
+    for (int i = 0; i < 300; ++i) {
+        both.run(hand);
+        least = std::min(least, both.out.contact.y());
+        most = std::max(most, both.out.contact.y());
+    }
+    CHECK(most - least < 1e-3);
+    CHECK(0.5 * (least + most) == doctest::Approx(2.0).epsilon(0.01));
+    // the moment of the push on the stop of 150 N m/rad
+    CHECK(both.links->linkage.position(0) == doctest::Approx(-0.05 - 2.0 * 0.15 / 150.0).epsilon(0.01));
+}
+
+TEST_CASE("tool and floating linkage share the momentum that the hand gives") {
+    Surface surface = shared::paper_surface();
+    // pushed along its axis, through its center of mass
+    Beside both(shared::box_tool(0.3), Pose(-0.0305, 0.0, 0.0), shared::chain(1, BaseKind::floating),
+                coordinates({0.05, 0.0, 0.0}), surface);
+    both.data->tool.piece[0].convex = make_disc(Vec2::Zero(), 0.03);
+    HandInput hand;
+    hand.held = true;
+    hand.force = Wrench(0.5, 0.0, 0.0);
+    double given = 0.0;
+    for (int i = 0; i < 400; ++i) {
+        both.run(hand);
+        given += 0.5 * k_step;
+    }
+    const double tool = both.data->velocity.x();
+    const double link = both.links->linkage.velocity(0);
+    CHECK(0.3 * tool + 0.1 * link == doctest::Approx(given).epsilon(1e-6));
+    CHECK(link == doctest::Approx(tool).epsilon(0.01));
+}
+
+TEST_CASE("random pushes between a tool and an arm create no energy") {
+    std::uint32_t seed = 11;
+    const auto random = [&seed](double least, double most) {
+        seed = seed * 1664525U + 1013904223U;
+        return least + (most - least) * static_cast<double>(seed >> 8) / 16777216.0;
+    };
+    double worst = 0.0;
+    for (int run = 0; run < 40; ++run) {
+        Surface surface = shared::paper_surface();
+        surface.restitution = random(0.0, 1.0);
+        surface.static_friction = surface.dynamic_friction = random(0.0, 0.6);
+        Beside both(shared::box_tool(random(0.02, 2.0)), Pose(random(0.02, 0.28), 0.12, random(-1.0, 1.0)),
+                    shared::chain(3), coordinates({0.0, random(-0.2, 0.2), random(-0.2, 0.2)}), surface);
+        both.data->velocity = Twist(random(-0.3, 0.3), -1.0, random(-5.0, 5.0));
+        const auto energy = [&both] {
+            const ToolModel& t = both.tool.tool;
+            return 0.5 * t.mass * both.data->velocity.head<2>().squaredNorm() +
+                   0.5 * t.inertia * both.data->velocity.z() * both.data->velocity.z() +
+                   kinetic_energy(both.linkage.tool.linkage, both.links->linkage);
+        };
+        const double start = energy();
+        for (int i = 0; i < 400; ++i) {
+            both.run();
+            worst = std::max(worst, energy() / start);
+        }
+    }
+    MESSAGE("most energy seen: " << worst << " of the start");
+    CHECK(worst < 1.01);
+}
