@@ -265,7 +265,7 @@ void assemble(const Model& model, Data& data, double dt) {
             r.gap = point.gap;
             r.stiffness = p.surface.stiffness * point.weight;
             r.damping = p.surface.damping * point.weight;
-            r.was_apart = point.gap > 0.0;
+            r.was_apart = point.gap > 0.0 && p.presence >= 1.0; // what fades is not hit
             double* row = &s.normal_rows(s.points, 0);
             if (lone) {
                 write_rigid_row(data, other, walls_move, point.position, p.normal, row, r.drive);
