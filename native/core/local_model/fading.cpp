@@ -11,6 +11,7 @@
 #include <haptics/core/contact/overlap.hpp>
 
 #include <algorithm>
+#include <array>
 
 namespace haptics::local {
 namespace {
@@ -64,10 +65,24 @@ void save(const Data& data, std::int32_t i, Leavers& out) {
     out.track[slot].leaving = true;
 }
 
-void rename_movable(Data& data, std::int32_t from, std::int32_t to) {
+// movables and patches name bodies by index: let them name the same ones after those of `now` moved up, -1
+// where a body is gone (detection recalls its patches by their ids)
+void rename(const std::array<std::int32_t, k_max_bodies>& now, Data& data) {
     for (std::int32_t i = 0; i < data.movable_count; ++i) {
         std::int32_t& body = data.movable[static_cast<std::size_t>(i)].body;
-        body = body == from ? to : body;
+        body = body < 0 ? body : now[static_cast<std::size_t>(body)];
+    }
+    const std::int32_t links = data.tool.body_count;
+    const auto rename_side = [&](std::int32_t& body) {
+        if (body < links)
+            return;
+        const std::int32_t found = now[static_cast<std::size_t>(body - links)];
+        body = found < 0 ? -1 : found + links;
+    };
+    for (std::int32_t i = 0; i < data.patches.count; ++i) {
+        Patch& p = data.patches.patch[static_cast<std::size_t>(i)];
+        rename_side(p.body_a);
+        rename_side(p.body_b);
     }
 }
 
@@ -116,24 +131,28 @@ void append_leavers(Data& data) {
 
 void end_fades(Data& data) {
     BodySet& set = data.neighbors;
+    std::array<std::int32_t, k_max_bodies> now;
     std::int32_t kept = 0;
     for (std::int32_t i = 0; i < set.body_count; ++i) {
         const auto from = static_cast<std::size_t>(i);
         Track& t = data.track[from];
         const bool left_alone = t.presence < 1.0 && !is_stood_in(data, i);
         if (t.leaving && (t.presence <= 0.0 || left_alone)) {
-            rename_movable(data, i, -1);
+            now[from] = -1;
             continue;
         }
         if (left_alone)
             set_presence(1.0, t, set.body[from]);
+        now[from] = kept;
         const auto to = static_cast<std::size_t>(kept++);
         if (to == from)
             continue;
         set.body[to] = set.body[from];
         data.track[to] = data.track[from];
-        rename_movable(data, i, kept - 1);
     }
+    if (kept == set.body_count)
+        return;
+    rename(now, data);
     set.body_count = kept; // their pieces stay until the next snapshot
 }
 
