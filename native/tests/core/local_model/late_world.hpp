@@ -242,7 +242,9 @@ struct Figures {
     double jump_ratio{0.0};
     /// The same over all steps.
     double any_ratio{0.0};
+    /// Contacts that were run into, and the same of the truth.
     int colliding{0};
+    int colliding_true{0};
 };
 
 inline Figures compare(Motion motion, const Line& line, Use use, const Press& press, double seconds = 4.0) {
@@ -268,6 +270,7 @@ inline Figures compare(Motion motion, const Line& line, Use use, const Press& pr
                 f.jump_ratio = std::max(f.jump_ratio, ratio);
             }
             f.colliding += a.colliding;
+            f.colliding_true += b.colliding;
         }
         last = a.force;
         last_true = b.force;
