@@ -93,9 +93,9 @@ Outcome lean(Place place, BodyKind kind, unsigned seed) {
     StepOutput out;
     Outcome o;
     double next = 0.0;
-    Pose settled;
+    Pose settled = Pose::Zero();
     std::vector<double> anchor;
-    Wrench last;
+    Wrench last = Wrench::Zero();
     for (int i = 0; i < 62000; ++i) {
         if (data->time >= next) {
             const double rate = 20.0 + 100.0 * unit(random);
