@@ -1,10 +1,18 @@
 // What appears or leaves while the tool stands in it.
 //
 // A neighbor that the new snapshot no longer lists but that is touched stays for k_fade seconds, moves on
-// along its path, and its presence falls from 1 to 0 as 3 u^2 - 2 u^3; one that appears around the tool
-// grows likewise. Stiffness and damping of its contacts are multiplied by the presence, so every force fades
-// with it; a spring that only gets softer gives no energy. There are no collisions with what fades: it was
-// not run into. As soon as nothing stands in it, a leaver is gone and a newcomer is there.
+// along its path, and its presence u falls evenly from 1 to 0; one that appears around the tool grows
+// likewise. Stiffness and damping of its contacts are multiplied by the weight 3 u^2 - 2 u^3, so every force
+// fades with it. There are no collisions with what fades: it was not run into. As soon as nothing stands in
+// it, a leaver is gone and a newcomer is there.
+//
+// Replacement. Contacts that form one patch add their presences (patch_merge.cpp), so a wall whose like takes
+// its place is not felt: what one loses the other gains. For that to hold when the like is replaced in turn
+// before it is all there, what left later waits until what left earlier is gone.
+//
+// Energy. A spring that only gets softer gives no energy, but one that grows around a tool at the depth d
+// gives up to K d^2 / 2 and would throw the tool out. So a contact that fades with the weight w has a damper
+// more, 4 (1 - u) w sqrt(K m) with the mass m that the contact moves (assemble.cpp): the tool creeps out.
 
 #include "fading.hpp"
 
@@ -62,6 +70,8 @@ void save(const Data& data, std::int32_t i, Leavers& out) {
     const auto slot = static_cast<std::size_t>(out.body_count++);
     out.body[slot] = body;
     out.track[slot] = data.track[static_cast<std::size_t>(i)];
+    if (!out.track[slot].leaving)
+        out.track[slot].left = data.time;
     out.track[slot].leaving = true;
 }
 
@@ -157,13 +167,25 @@ void end_fades(Data& data) {
 }
 
 void set_presence(double u, Track& track, Body& body) {
-    track.presence = u;
-    body.presence = u * u * (3.0 - 2.0 * u);
+    track.presence = body.presence = u;
 }
 
-void fade(double dt, Track& track, Body& body) {
-    const double change = track.leaving ? -dt / k_fade : dt / k_fade;
-    set_presence(std::clamp(track.presence + change, 0.0, 1.0), track, body);
+void fade(double dt, Data& data) {
+    const auto fades = [&](const Track& t) { return t.leaving ? t.presence > 0.0 : t.presence < 1.0; };
+    double first = data.time; // when the first of those that still fade has left
+    for (std::int32_t i = 0; i < data.neighbors.body_count; ++i) {
+        const Track& t = data.track[static_cast<std::size_t>(i)];
+        if (t.leaving && fades(t))
+            first = std::min(first, t.left);
+    }
+    for (std::int32_t i = 0; i < data.neighbors.body_count; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        Track& t = data.track[k];
+        if (!fades(t) || (t.leaving && t.left > first))
+            continue;
+        const double change = t.leaving ? -dt / k_fade : dt / k_fade;
+        set_presence(std::clamp(t.presence + change, 0.0, 1.0), t, data.neighbors.body[k]);
+    }
 }
 
 void weigh_contacts(Data& data) {
@@ -171,8 +193,9 @@ void weigh_contacts(Data& data) {
         Patch& p = data.patches.patch[static_cast<std::size_t>(i)];
         if (p.presence >= 1.0)
             continue;
-        p.surface.stiffness *= p.presence;
-        p.surface.damping *= p.presence;
+        const double weight = presence_weight(p.presence);
+        p.surface.stiffness *= weight;
+        p.surface.damping *= weight;
         if (p.memory.state == ContactState::none)
             p.memory.state = ContactState::sliding;
     }

@@ -21,8 +21,13 @@ void end_fades(Data& data);
 // Sets how much of the fade is done, 0 (absent) to 1 (all there).
 void set_presence(double u, Track& track, Body& body);
 
-// Takes the fade on by `dt`.
-void fade(double dt, Track& track, Body& body);
+// Takes all fades on by `dt`.
+void fade(double dt, Data& data);
+
+// Share of stiffness and damping at the presence u, smooth at both ends.
+inline double presence_weight(double u) {
+    return u * u * (3.0 - 2.0 * u);
+}
 
 // Weighs the contacts with what fades: after they are found.
 void weigh_contacts(Data& data);

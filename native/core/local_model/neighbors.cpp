@@ -36,12 +36,11 @@ void place(Data& data, std::size_t i) {
 void place_neighbors(Data& data, double dt) {
     for (std::int32_t i = 0; i < data.neighbors.body_count; ++i) {
         const auto k = static_cast<std::size_t>(i);
-        Track& t = data.track[k];
+        const Track& t = data.track[k];
         if (t.driven && !(t.still && t.offset.isZero(0.0)))
             place(data, k);
-        if (t.presence < 1.0 || t.leaving)
-            fade(dt, t, data.neighbors.body[k]);
     }
+    fade(dt, data);
 }
 
 void copy_bodies(const BodySet& from, BodySet& to) {
@@ -144,6 +143,7 @@ void take_neighborhood(const Neighborhood& n, Data& data) {
     if (n.sequence <= data.sequence)
         return;
     learn_latency(n, data);
+    const bool first = data.sequence == 0; // what the loop starts in has been there before
     std::array<bool, k_max_bodies> fresh;
     std::array<std::uint64_t, k_max_bodies> old_id;
     for (std::int32_t i = 0; i < n.bodies.body_count; ++i) {
@@ -174,7 +174,7 @@ void take_neighborhood(const Neighborhood& n, Data& data) {
     // what appears around the tool
     for (std::int32_t i = 0; i < n.bodies.body_count; ++i) {
         const auto k = static_cast<std::size_t>(i);
-        if (fresh[k] && is_stood_in(data, i))
+        if (!first && fresh[k] && is_stood_in(data, i))
             set_presence(0.0, data.track[k], data.neighbors.body[k]);
     }
     if (is_beyond_plan(n, data))

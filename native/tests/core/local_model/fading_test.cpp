@@ -121,32 +121,43 @@ TEST_CASE("what leaves is let go of as soon as the tool is off it") {
     CHECK(s.data->neighbors.body_count == 0);
 }
 
-TEST_CASE("a body that appears around the tool fades in and is not run into") {
+TEST_CASE("a body that appears around the tool fades in, pushes it out gently and is not run into") {
     const Convex disc = make_disc(Vec2::Zero(), 0.01);
     for (const Convex* shape : {static_cast<const Convex*>(nullptr), &disc})
-        for (const BodyKind kind : {BodyKind::fixed, BodyKind::kinematic, BodyKind::movable}) {
-            Scene s(shape);
-            s.hand.target.y() = 0.0097;
-            s.publish();
-            s.run(500);
-            s.data->velocity.y() = -0.05; // would be a hit
-            Body& floor = s.add(7, kind, k_floor);
-            floor.mass = 1e3;
-            floor.inertia = 10.0;
-            s.publish();
-            s.watch();
-            double most = 0.0;
-            for (int i = 0; i < 300; ++i) {
-                s.run(1);
-                most = std::max(most, s.last.y());
+        for (const BodyKind kind : {BodyKind::fixed, BodyKind::kinematic, BodyKind::movable})
+            for (const double speed : {0.0, 0.05}) {
+                Scene s(shape);
+                s.hand.target.y() = 0.0097;
+                s.publish();
+                s.run(500);
+                s.data->velocity.y() = -speed; // would be a hit
+                Body& floor = s.add(7, kind, k_floor);
+                floor.mass = 1e3;
+                floor.inertia = 10.0;
+                s.publish();
+                s.watch();
+                CAPTURE(speed);
+                s.run(2);
+                CHECK(s.largest < 0.05);
+                double most = 0.0;
+                double fastest = 0.0;
+                int steps = 2;
+                for (; steps < 60 && s.data->track[0].presence < 1.0; ++steps) {
+                    s.run(1);
+                    most = std::max(most, s.last.y());
+                    fastest = std::max(fastest, s.data->velocity.y());
+                }
+                CHECK(s.hits == 0);
+                CHECK(most > 0.3);
+                // at rest as at an update; else as the motion in a wall that is all there
+                CHECK(s.largest < std::max(0.05, 0.5 * 15000.0 * 0.001 * speed));
+                // the spring alone would give 0.067 m/s for a depth of 0.3 mm
+                CHECK(fastest < (speed > 0.0 ? 0.9 * speed : 0.02));
+                s.run(1000);
+                CHECK(s.out.contacts == 1);
+                // in the end it is as stiff as it should be
+                CHECK(s.last.y() == doctest::Approx(15000.0 * s.out.max_penetration).epsilon(1e-3));
             }
-            CHECK(most > 0.5);
-            CHECK(s.largest < allowed(most));
-            CHECK(s.hits == 0);
-            CHECK(s.out.contacts == 1);
-            // in the end it is as stiff as it should be
-            CHECK(s.last.y() == doctest::Approx(15000.0 * s.out.max_penetration).epsilon(1e-3));
-        }
 }
 
 TEST_CASE("a body that appears free of the tool is whole when it is hit") {

@@ -45,6 +45,8 @@ struct Track {
     /// Time share of the fade that is done, 0 (absent) to 1 (all there), and its direction.
     double presence{1.0};
     bool leaving{false};
+    /// Loop-clock time at which a leaver was no longer listed, s.
+    double left{0.0};
 };
 
 } // namespace haptics
