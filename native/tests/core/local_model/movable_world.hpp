@@ -74,14 +74,13 @@ class MovableWorld {
             given_ = report_;
             move(length);
         }
-        time_ += length;
-        while (data_->time + 0.5 * options_.step < time_) {
-            if (before_step)
-                before_step(*this);
-            step(model_, *data_, hand, options_.step, output);
-            if (after_step)
-                after_step(*this);
-        }
+        run(length);
+    }
+    /// The haptic steps of a tick of which nothing is heard, but for the very first snapshot.
+    void coast() {
+        if (next_->sequence == 0)
+            publish();
+        run(1.0 / options_.rate);
     }
 
     /// Linear momentum of the tool and, of every movable, what the environment has and has yet to be given.
@@ -118,6 +117,7 @@ class MovableWorld {
     }
     [[nodiscard]] Data& data() { return *data_; }
     [[nodiscard]] Body& body(std::size_t i) { return next_->bodies.body[i]; }
+    void set_gravity(const Vec2& gravity) { next_->gravity = gravity; }
     [[nodiscard]] BodySet& bodies() { return next_->bodies; }
 
     /// Moves the bodies by `length` s; freely unless set otherwise.
@@ -136,6 +136,17 @@ class MovableWorld {
         std::uint64_t step{0};
         std::vector<MovableBelief> belief;
     };
+
+    void run(double length) {
+        time_ += length;
+        while (data_->time + 0.5 * options_.step < time_) {
+            if (before_step)
+                before_step(*this);
+            step(model_, *data_, hand, options_.step, output);
+            if (after_step)
+                after_step(*this);
+        }
+    }
 
     // reads the newest report, unless it is lost, and gives its impulses to the bodies
     void push() {
