@@ -119,6 +119,7 @@ void collide_pieces(const Search& search, const Actor& a, const Piece& piece_a, 
     draft.patch.point_count = contact.count;
     draft.patch.point = contact.point;
     draft.patch.surface = combine(a.body->surface, b.body->surface);
+    draft.patch.presence = std::min(a.body->presence, b.body->presence);
     write_side(a, b, contact, side);
     search.drafts.add(draft);
 }

@@ -9,6 +9,10 @@
 /// and is gone at r = 1: a box that is tilted onto its corner feels the full stiffness of the wall there, and
 /// nothing jumps on the way. (A share that follows the depths instead would be stiffer to turning than the
 /// wall, and chatter on hard walls.)
+///
+/// Matter that fades. Of two contacts with presences p >= q, the ends go from those of p alone (q = 0) to
+/// those of both (q = p), and the presence of the patch is min(1, p + q): the pressure of a tool that stands
+/// half on a tile that leaves moves over to the other half, and what is replaced by its like is not felt.
 
 #include "patch_merge.hpp"
 
@@ -54,6 +58,24 @@ bool leads(const Draft& p, const Draft& q) {
     return p.patch.feature_a < q.patch.feature_a;
 }
 
+/// The ends of `patch`, as many as `ends` has: a single point is both of its ends.
+const PatchPoint& end_of(const Patch& patch, std::size_t end) {
+    return patch.point[patch.point_count < 2 ? 0 : end];
+}
+
+/// Draws the ends of a joined patch back to those of the contact that is there for longer.
+void draw_back(const Patch& stays, double share, Patch& joined) {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(joined.point_count); ++k) {
+        const Vec2 tangent = perpendicular(joined.normal);
+        const bool ordered =
+            stays.point_count < 2 || tangent.dot(stays.point[1].position - stays.point[0].position) >= 0.0;
+        const PatchPoint& from = end_of(stays, ordered ? k : 1 - k);
+        PatchPoint& p = joined.point[k];
+        p.position = from.position + share * (p.position - from.position);
+        p.gap = from.gap + share * (p.gap - from.gap);
+    }
+}
+
 /// Points of both, reduced to the two ends.
 void join(Patch& kept, const Patch& other) {
     std::array<PatchPoint, 4> point;
@@ -82,6 +104,17 @@ void join(Patch& kept, const Patch& other) {
         kept.point[1] = point[last];
 }
 
+/// The same where matter fades.
+void join_fading(Patch& kept, const Patch& other) {
+    const Patch alone = kept.presence >= other.presence ? kept : other;
+    const double less = std::min(kept.presence, other.presence);
+    const bool same_body = kept.body_b == other.body_b;
+    join(kept, other);
+    if (less < alone.presence)
+        draw_back(alone, less / alone.presence, kept);
+    kept.presence = same_body ? alone.presence : std::min(1.0, alone.presence + less);
+}
+
 } // namespace
 
 void DraftList::add(const Draft& added) {
@@ -97,12 +130,14 @@ void DraftList::add(const Draft& added) {
         }
         const double reach = std::max(present.reach, added.reach);
         const bool one_way = present.one_way && added.one_way;
+        const auto join_points =
+            added.patch.presence < 1.0 || present.patch.presence < 1.0 ? join_fading : join;
         if (leads(added, present)) {
             Draft merged = added;
-            join(merged.patch, present.patch);
+            join_points(merged.patch, present.patch);
             present = std::move(merged);
         } else {
-            join(present.patch, added.patch);
+            join_points(present.patch, added.patch);
         }
         present.reach = reach;
         present.one_way = one_way;

@@ -18,7 +18,9 @@
 // the hand can feel, and the environment moves them.
 
 #include <algorithm>
+#include <cmath>
 
+#include "fading.hpp"
 #include "internal.hpp"
 
 namespace haptics::local {
@@ -30,6 +32,8 @@ constexpr int k_none = -1;
 constexpr double k_limit_stiffness = 15000.0;
 constexpr double k_limit_damping = 20.0;
 constexpr double k_limit_lever = 0.1;
+// damping of what fades, in units of sqrt(K m)
+constexpr double k_fade_damping = 4.0;
 
 // first system row of a body of the patch list (tool links first, then neighbors), or k_none
 int first_row(const Data& data, std::int32_t body) {
@@ -205,6 +209,18 @@ void assemble_joints(const Model& model, Data& data, double dt) {
     }
 }
 
+// what fades is damped, see fading.cpp
+void damp_fading(const Model& model, Data& data, int point, double presence) {
+    need_inverse(model, data);
+    ContactSystem& s = data.system;
+    PointRow& r = s.point[static_cast<std::size_t>(point)];
+    const auto row = s.normal_rows.row(point);
+    const double mobility = row.dot(s.inverse_mass * row.transpose());
+    if (mobility > 0.0)
+        r.damping +=
+            k_fade_damping * (1.0 - presence) * std::sqrt(r.stiffness * presence_weight(presence) / mobility);
+}
+
 } // namespace
 
 void load_velocities(const Model& model, Data& data) {
@@ -274,7 +290,7 @@ void assemble(const Model& model, Data& data, double dt) {
             r.gap = point.gap;
             r.stiffness = p.surface.stiffness * point.weight;
             r.damping = p.surface.damping * point.weight;
-            r.was_apart = point.gap > 0.0;
+            r.was_apart = point.gap > 0.0 && p.presence >= 1.0; // what fades is not hit
             double* row = &s.normal_rows(s.points, 0);
             if (lone) {
                 write_rigid_row(data, other, walls_move, point.position, p.normal, row, r.drive);
@@ -282,6 +298,8 @@ void assemble(const Model& model, Data& data, double dt) {
                 add_side(model, data, p.body_a, row_a, point.position, p.normal, 1.0, row, r.drive);
                 add_side(model, data, p.body_b, row_b, point.position, p.normal, -1.0, row, r.drive);
             }
+            if (p.presence < 1.0)
+                damp_fading(model, data, s.points, p.presence);
             middle += point.weight * point.position;
             ++s.points;
         }

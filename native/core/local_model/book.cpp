@@ -7,6 +7,7 @@
 // integrator has integrated the product itself.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "internal.hpp"
@@ -14,7 +15,7 @@
 namespace haptics::local {
 namespace {
 
-// counters of what the tool gave to a movable, and the work that the other side of a patch did
+// the work that the other side of a patch did
 void book_other_side(Data& data, int i, const Motion& motion, StepOutput& output) {
     ContactSystem& s = data.system;
     const PatchRow& t = s.row[static_cast<std::size_t>(i)];
@@ -27,21 +28,26 @@ void book_other_side(Data& data, int i, const Motion& motion, StepOutput& output
         output.source_work += dt * force * (moving + drive);
     };
     output.source_work += motion.integrated ? t.movable_work : 0.0;
-    MovableState* m = t.movable < 0 ? nullptr : &data.movable[static_cast<std::size_t>(t.movable)];
-    const auto give = [&](const auto& row, double force) {
-        if (m != nullptr && m->row >= 0)
-            m->belief.given += dt * force * row.template segment<3>(m->row).transpose();
-    };
     work(s.tangent_rows.row(i), t.force, t.drive);
-    give(s.tangent_rows.row(i), t.force);
     for (int k = 0; k < t.point_count; ++k) {
         const int point = t.first_point + k;
         const PointRow& p = s.point[static_cast<std::size_t>(point)];
         work(s.normal_rows.row(point), p.force, p.drive);
-        give(s.normal_rows.row(point), p.force);
     }
-    if (m != nullptr && m->row >= 0)
-        m->given_step = data.step;
+}
+
+// what the movables are given
+void book_push(Data& data, double dt) {
+    ContactSystem& s = data.system;
+    if (s.freedoms == s.tool_freedoms)
+        return;
+    std::array<double, k_max_points> normal;
+    std::array<double, k_max_rows> tangent;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(s.points); ++i)
+        normal[i] = dt * s.point[i].force;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(s.patches); ++i)
+        tangent[i] = dt * s.row[i].force;
+    tell_push(data, normal.data(), tangent.data());
 }
 
 } // namespace
@@ -103,6 +109,7 @@ void book(const Model& model, Data& data, const Wrench& hand_force, const Motion
         if (moves)
             book_other_side(data, i, motion, output);
     }
+    book_push(data, dt);
     if (s.has_joint_springs)
         for (int i = 0; i < n; ++i) {
             const Vec3 spring = joint_spring(model, data, i);

@@ -7,6 +7,7 @@
 // opens. The restitution of a hit slower than the collision speed is 0 as well.
 
 #include <algorithm>
+#include <array>
 
 #include "contact_rules.hpp"
 #include "internal.hpp"
@@ -93,6 +94,8 @@ bool collide(const Model& model, Data& data, StepOutput& output) {
         s.jump += s.velocity.head(n) - problem.velocity.head(n);
     output.grip_velocity_jump += s.grip * (s.velocity.head(n) - problem.velocity.head(n));
     const Vec2 grip = grip_pose(data.grip, data.pose).head<2>();
+    std::array<double, k_max_points> normal_impulse{};
+    std::array<double, k_max_rows> tangent_impulse{};
     for (int c = 0; c < count; ++c) {
         const int i = chosen[static_cast<std::size_t>(c)];
         PointRow& p = s.point[static_cast<std::size_t>(i)];
@@ -122,16 +125,10 @@ bool collide(const Model& model, Data& data, StepOutput& output) {
                 normal * other(s.normal_rows.row(i), p.drive) +
                 data.solution.tangent_impulse(c) * other(s.tangent_rows.row(p.patch), t.drive);
         }
-        if (t.movable < 0)
-            continue;
-        MovableState& m = data.movable[static_cast<std::size_t>(t.movable)];
-        if (m.row < 0)
-            continue;
-        m.belief.given +=
-            normal * s.normal_rows.row(i).segment<3>(m.row).transpose() +
-            data.solution.tangent_impulse(c) * s.tangent_rows.row(p.patch).segment<3>(m.row).transpose();
-        m.given_step = data.step;
+        normal_impulse[static_cast<std::size_t>(i)] += normal;
+        tangent_impulse[static_cast<std::size_t>(p.patch)] += data.solution.tangent_impulse(c);
     }
+    tell_push(data, normal_impulse.data(), tangent_impulse.data());
     store_velocities(model, data);
     // Coriolis forces of the rest of the step are those of the new velocity
     write_tool_force(model, data);

@@ -22,6 +22,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fading.hpp"
+
 namespace haptics::local {
 namespace {
 
@@ -47,6 +49,8 @@ void look(const Model& model, Data& data, double dt) {
         data.patches.patch[index(s.row[index(i)].patch)].memory.row = i;
     data.previous = data.patches;
     detect_patches(data.tool, data.neighbors, {model.settings.margin, dt}, data.previous, data.patches);
+    if (data.plan.runs(Stage::moving_walls))
+        weigh_contacts(data);
 }
 
 // point of a row that is nearest to a place, with its distance; -1 when there is none

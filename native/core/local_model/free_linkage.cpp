@@ -145,6 +145,8 @@ void follow_linkage(Data& data, std::uint64_t id, const Model& model, const Data
         m.belief.pose = b.pose = link.pose;
         m.belief.velocity = b.velocity = link.velocity;
         m.blend_left = 0.0;
+        m.lead.setZero();
+        m.shift_velocity.setZero();
         const LinkResponse response = link_response(model, linkage, b.link, dt);
         b.mobility = response.mobility;
         b.mobility.diagonal() += k_least * Vec3(1.0 / b.mass, 1.0 / b.mass, 1.0 / b.inertia);

@@ -40,6 +40,8 @@ Wrench book_coupling(const Data& data, const HandInput& hand, const HandInput& u
 // Adds contact forces, impulses on movables and work of the sub-step to the books, and forms `tool_force`.
 void book(const Model& model, Data& data, const Wrench& hand_force, const Motion& motion, double share,
           StepOutput& output);
+// Counts what the tool's push, an impulse for each point and each patch, leaves in the movables (push.cpp).
+void tell_push(Data& data, const double* normal, const double* tangent);
 // Velocities into Data, poses on by `moved`, everything else by `dt`.
 void move_bodies(const Model& model, Data& data, const FreedomVector& moved, double dt);
 

@@ -1,52 +1,46 @@
-// Late geometry. Snapshots come at 20-120 Hz, late and unevenly; the haptic step needs poses every
-// millisecond.
+// Late geometry: snapshots come at 20-120 Hz, late and unevenly; the haptic step needs poses every
+// millisecond. Bodies that the scene moves follow the path of path.cpp, movable ones the beliefs of
+// movables.cpp, what appears or leaves while it is touched fades (fading.cpp).
 //
-// Kinematic bodies are extrapolated from the snapshot with its velocity for at most two ticks, then brought
-// to rest in k_rest seconds with a velocity that falls linearly: for u = age - 2 ticks in [0, k_rest],
-// distance = u - u^2 / (2 k_rest), velocity factor = 1 - u / k_rest. When a new snapshot disagrees with the
-// extrapolation, the difference becomes an offset that falls linearly to zero within one tick, so that no
-// surface jumps under the hand.
-//
-// Movable bodies belong to the local model between ticks. A snapshot says where the environment has them
-// after it was told what the model believed at the step `echo`. With B(t) the belief, C(t) the sum of
-// corrections taken so far and X the environment's state at snapshot time s,
-//     innovation = X - (B(echo) moved on to s with B's velocity) - (C(now) + pending - C(echo)),
-// the last bracket being what has been corrected since and must not be corrected twice. It is blended in
-// within one tick.
+// Latency. The age of a snapshot on arrival is known. So is how old the one before had become by then, beyond
+// its tick: that tells of jitter and of lost snapshots. The larger of the two counts, and is forgotten in
+// k_latency_memory seconds; a snapshot that was waited for longer than k_longest_latency means that the
+// environment stood still, not that it is that late.
 
 #include <algorithm>
+#include <cmath>
 
+#include "fading.hpp"
 #include "internal.hpp"
+#include "movables.hpp"
+#include "path.hpp"
 
 namespace haptics {
 namespace {
 
-constexpr double k_rest = 0.05;
+using namespace local;
 
-struct Reach {
-    double time;
-    double rate;
-};
-
-// how far (s) and how fast (1) a body goes on from its snapshot
-Reach extrapolate(double age, double tick) {
-    const double full = 2.0 * tick;
-    if (age <= full)
-        return {std::max(age, -full), 1.0}; // a tick's own time may lie a little ahead of the loop's
-    const double u = std::min(age - full, k_rest);
-    return {full + u - u * u / (2.0 * k_rest), 1.0 - u / k_rest};
-}
+constexpr double k_longest_latency = 0.15;
+constexpr double k_latency_memory = 4.0;
+constexpr double k_turn = 6.28318530717958647692;
+// a body that would have to be faster than this to get where the snapshot has it has been put there, m/s
+constexpr double k_teleport = 5.0;
 
 void place(Data& data, std::size_t i) {
-    const Track& t = data.track[i];
-    Body& b = data.neighbors.body[i];
-    const double age = data.time - data.snapshot_time;
-    const Reach reach = extrapolate(age, data.tick);
-    const double blend = std::clamp(1.0 - age / data.tick, 0.0, 1.0);
-    b.pose = t.pose + reach.time * t.velocity + blend * t.offset;
-    b.velocity = reach.rate * t.velocity;
-    if (blend > 0.0 && age >= 0.0)
-        b.velocity -= t.offset / data.tick;
+    const PathPoint p = shown(data.track[i], data.time);
+    data.neighbors.body[i].pose = p.pose;
+    data.neighbors.body[i].velocity = p.velocity;
+}
+
+// moves what the scene moves to where it is shown now, and lets fade what fades
+void place_neighbors(Data& data, double dt) {
+    for (std::int32_t i = 0; i < data.neighbors.body_count; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const Track& t = data.track[k];
+        if (t.driven && !(t.still && t.offset.isZero(0.0)))
+            place(data, k);
+    }
+    fade(dt, data);
 }
 
 void copy_bodies(const BodySet& from, BodySet& to) {
@@ -67,93 +61,80 @@ std::int32_t find_body(const BodySet& set, std::uint64_t id, std::int32_t hint) 
 
 // patches name bodies by index: let them name the same bodies in the new list, and drop those whose body is
 // gone
-void rename_patches(Data& data, const BodySet& next) {
+void rename_patches(const std::array<std::uint64_t, k_max_bodies>& old_id, Data& data) {
     const std::int32_t links = data.tool.body_count;
-    const auto renamed = [&](std::int32_t body) {
+    const auto rename = [&](std::int32_t& body) {
         if (body < links)
-            return body;
+            return true;
         const std::int32_t old = body - links;
-        const std::int32_t found =
-            find_body(next, data.neighbors.body[static_cast<std::size_t>(old)].id, old);
-        return found < 0 ? -1 : found + links;
+        const std::int32_t found = find_body(data.neighbors, old_id[static_cast<std::size_t>(old)], old);
+        body = found + links;
+        return found >= 0;
     };
     std::int32_t kept = 0;
     for (std::int32_t i = 0; i < data.patches.count; ++i) {
         Patch p = data.patches.patch[static_cast<std::size_t>(i)];
-        p.body_a = renamed(p.body_a);
-        p.body_b = renamed(p.body_b);
-        if (p.body_a >= 0 && p.body_b >= 0)
-            data.patches.patch[static_cast<std::size_t>(kept++)] = p;
+        if (!rename(p.body_a) || !rename(p.body_b))
+            continue;
+        if (p.body_b >= links) // a wall may begin to move, or come to rest for good
+            p.side.fixed_b =
+                data.neighbors.body[static_cast<std::size_t>(p.body_b - links)].kind == BodyKind::fixed;
+        data.patches.patch[static_cast<std::size_t>(kept++)] = p;
     }
     data.patches.count = kept;
 }
 
-const MovableBelief* find_echo(const Neighborhood& n, const MovableBelief& belief) {
-    for (std::int32_t i = 0; i < n.echo_count; ++i) {
-        const MovableBelief& e = n.echo[static_cast<std::size_t>(i)];
-        if (e.id == belief.id && e.epoch == belief.epoch)
-            return &e;
-    }
-    return nullptr;
+void learn_latency(const Neighborhood& n, Data& data) {
+    double seen = std::clamp(data.time - n.time, 0.0, k_longest_latency);
+    const double waited = data.time - data.snapshot_time - data.tick;
+    if (data.sequence > 0 && waited <= k_longest_latency)
+        seen = std::max(seen, waited);
+    const double part =
+        data.sequence == 0 ? 1.0 : std::clamp((n.time - data.snapshot_time) / k_latency_memory, 0.0, 1.0);
+    data.latency = std::max(seen, data.latency + part * (seen - data.latency));
 }
 
-void correct(MovableState& m, const Body& seen, const Neighborhood& n) {
-    const MovableBelief* echo = find_echo(n, m.belief);
-    if (echo == nullptr)
-        return; // the environment has not seen this belief yet
-    const Pose expected = echo->pose + (n.time - echo->time) * echo->velocity;
-    const Pose since_pose = m.belief.corrected_pose - echo->corrected_pose;
-    const Twist since_velocity = m.belief.corrected_velocity - echo->corrected_velocity;
-    m.pending_pose = seen.pose - expected - since_pose;
-    m.pending_velocity = seen.velocity - echo->velocity - since_velocity;
-    m.blend_left = n.tick;
+// where and how neighbor `i` is shown now
+PathPoint shown_now(const Data& data, std::size_t i) {
+    if (data.track[i].driven)
+        return shown(data.track[i], data.time);
+    return {data.neighbors.body[i].pose, data.neighbors.body[i].velocity, Vec3::Zero()};
 }
 
-void meet(MovableState& m, const Body& seen, const Data& data) {
-    m = MovableState{};
-    m.belief.id = seen.id;
-    m.belief.epoch = data.step;
-    m.belief.time = data.time;
-    m.belief.pose = seen.pose + extrapolate(data.time - data.snapshot_time, data.tick).time * seen.velocity;
-    m.belief.velocity = seen.velocity;
+Track track_of(const Body& body, const Neighborhood& n, const Data& data) {
+    Track t;
+    t.pose = body.pose;
+    t.velocity = t.told = body.velocity;
+    t.time = n.time;
+    t.tick = std::max(n.tick, 1e-6);
+    t.reach = 2.0 * n.tick + data.latency;
+    t.taken = data.time;
+    t.still = body.kind == BodyKind::fixed;
+    return t;
 }
 
-// forgets movables that left and whose last impulses the environment has taken
-void forget_movables(Data& data, std::uint64_t echo_step) {
-    std::int32_t kept = 0;
-    for (std::int32_t i = 0; i < data.movable_count; ++i) {
-        const MovableState m = data.movable[static_cast<std::size_t>(i)];
-        if (m.body >= 0 || m.given_step > echo_step)
-            data.movable[static_cast<std::size_t>(kept++)] = m;
-    }
-    data.movable_count = kept;
+// lets the path of a body go on from its last one; false when the body has been put somewhere else
+bool follow(const PathPoint& from, const Track& before, Track& t) {
+    t.pose.z() += k_turn * std::round((before.pose.z() - t.pose.z()) / k_turn);
+    const double gap = std::max(t.time - before.time, t.tick);
+    const Pose jump = t.pose - extrapolated(before, t.time).pose;
+    if (jump.head<2>().norm() > k_teleport * gap)
+        return false;
+    t.presence = before.presence;
+    if (before.driven && !before.still && !t.still)
+        estimate(before, t);
+    join(from, t);
+    return true;
 }
 
-void take_movables(const Neighborhood& n, Data& data) {
-    for (std::int32_t i = 0; i < data.movable_count; ++i)
-        data.movable[static_cast<std::size_t>(i)].body = -1;
-    data.movable_overflow = 0;
-    for (std::int32_t b = 0; b < data.neighbors.body_count; ++b) {
-        const Body& seen = data.neighbors.body[static_cast<std::size_t>(b)];
-        if (seen.kind != BodyKind::movable)
-            continue;
-        std::int32_t slot = 0;
-        while (slot < data.movable_count && data.movable[static_cast<std::size_t>(slot)].belief.id != seen.id)
-            ++slot;
-        if (slot == k_max_movables) {
-            ++data.movable_overflow;
-            continue;
-        }
-        MovableState& m = data.movable[static_cast<std::size_t>(slot)];
-        if (slot == data.movable_count) {
-            meet(m, seen, data);
-            ++data.movable_count;
-        } else if (!seen.jointed) {
-            correct(m, seen, n);
-        }
-        m.body = b;
-    }
-    forget_movables(data, n.echo_step);
+// whether there is what the plan of the scene does not know of: what fades, a fixed body on its way, a
+// movable one that found no place
+bool is_beyond_plan(const Neighborhood& n, const Data& data) {
+    if (data.neighbors.body_count > n.bodies.body_count || data.movable_overflow > 0)
+        return true;
+    const auto end = data.track.begin() + n.bodies.body_count;
+    return std::any_of(data.track.begin(), end,
+                       [](const Track& t) { return t.presence < 1.0 || (t.still && !t.offset.isZero(0.0)); });
 }
 
 } // namespace
@@ -161,69 +142,57 @@ void take_movables(const Neighborhood& n, Data& data) {
 void take_neighborhood(const Neighborhood& n, Data& data) {
     if (n.sequence <= data.sequence)
         return;
-    rename_patches(data, n.bodies);
-    // the offset of a body that stays: where it is now less where the new snapshot puts it now
-    std::array<Track, k_max_bodies> next;
-    const Reach reach = extrapolate(data.time - n.time, n.tick);
+    learn_latency(n, data);
+    const bool first = data.sequence == 0; // what the loop starts in has been there before
+    std::array<bool, k_max_bodies> fresh;
+    std::array<std::uint64_t, k_max_bodies> old_id;
     for (std::int32_t i = 0; i < n.bodies.body_count; ++i) {
-        const Body& b = n.bodies.body[static_cast<std::size_t>(i)];
-        Track& t = next[static_cast<std::size_t>(i)];
-        t.pose = b.pose;
-        t.velocity = b.velocity;
-        const std::int32_t old = data.sequence == 0 ? -1 : find_body(data.neighbors, b.id, i);
-        if (old >= 0 && b.kind == BodyKind::kinematic) {
-            const double age = std::max(data.time - n.time, 0.0);
-            const double blend = std::max(1.0 - age / n.tick, 1e-3);
-            t.offset = (data.neighbors.body[static_cast<std::size_t>(old)].pose -
-                        (t.pose + reach.time * t.velocity)) /
-                       blend;
-        }
+        const auto k = static_cast<std::size_t>(i);
+        Track& t = data.next_track[k] = track_of(n.bodies.body[k], n, data);
+        const std::int32_t old = find_body(data.neighbors, n.bodies.body[k].id, i);
+        const auto was = static_cast<std::size_t>(old);
+        fresh[k] = old < 0 || !follow(shown_now(data, was), data.track[was], t);
     }
+    for (std::int32_t i = 0; i < data.neighbors.body_count; ++i)
+        old_id[static_cast<std::size_t>(i)] = data.neighbors.body[static_cast<std::size_t>(i)].id;
+    save_leavers(n.bodies, data);
+
+    // the new picture
     copy_bodies(n.bodies, data.neighbors);
-    std::copy_n(next.begin(), n.bodies.body_count, data.track.begin());
+    std::copy_n(data.next_track.begin(), n.bodies.body_count, data.track.begin());
+    append_leavers(data);
     data.sequence = n.sequence;
     data.snapshot_time = n.time;
     data.tick = n.tick;
     data.gravity = n.gravity;
     data.plan = n.plan;
     take_movables(n, data);
-    local::move_neighbors(data, 0.0);
+    rename_patches(old_id, data);
+    place_neighbors(data, 0.0);
+    move_movables(data, 0.0);
+
+    // what appears around the tool
+    for (std::int32_t i = 0; i < n.bodies.body_count; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        if (!first && fresh[k] && is_stood_in(data, i))
+            set_presence(0.0, data.track[k], data.neighbors.body[k]);
+    }
+    if (is_beyond_plan(n, data))
+        data.plan = Plan{};
 }
 
 void pass_time(Data& data, double seconds) {
-    local::move_neighbors(data, seconds);
+    move_neighbors(data, seconds);
 }
 
 namespace local {
 
 void move_neighbors(Data& data, double dt) {
     data.time += dt;
-    for (std::int32_t i = 0; i < data.neighbors.body_count; ++i)
-        if (data.neighbors.body[static_cast<std::size_t>(i)].kind == BodyKind::kinematic)
-            place(data, static_cast<std::size_t>(i));
-    for (std::int32_t i = 0; i < data.movable_count; ++i) {
-        MovableState& m = data.movable[static_cast<std::size_t>(i)];
-        MovableBelief& s = m.belief;
-        s.time = data.time;
-        if (m.row < 0)
-            s.pose += dt * s.velocity;
-        if (m.blend_left > 0.0 && dt > 0.0) {
-            const double part = std::min(1.0, dt / m.blend_left);
-            const Pose pose = part * m.pending_pose;
-            const Twist velocity = part * m.pending_velocity;
-            s.pose += pose;
-            s.velocity += velocity;
-            s.corrected_pose += pose;
-            s.corrected_velocity += velocity;
-            m.pending_pose -= pose;
-            m.pending_velocity -= velocity;
-            m.blend_left -= dt;
-        }
-        if (m.body >= 0) {
-            data.neighbors.body[static_cast<std::size_t>(m.body)].pose = s.pose;
-            data.neighbors.body[static_cast<std::size_t>(m.body)].velocity = s.velocity;
-        }
-    }
+    // what is on its way or fades is beyond the scene's plan, see take_neighborhood
+    if (data.plan.runs(Stage::moving_walls))
+        place_neighbors(data, dt);
+    move_movables(data, dt);
 }
 
 } // namespace local

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 
+#include "fading.hpp"
 #include "internal.hpp"
 
 namespace haptics {
@@ -21,8 +22,13 @@ void find_contacts(const Model& model, Data& data, double dt) {
         data.patches.count = 0;
         return;
     }
+    const bool fades = data.plan.runs(Stage::moving_walls);
+    if (fades)
+        local::end_fades(data);
     data.previous = data.patches;
     detect_patches(data.tool, data.neighbors, {model.settings.margin, dt}, data.previous, data.patches);
+    if (fades)
+        local::weigh_contacts(data);
 }
 
 void advance(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output) {

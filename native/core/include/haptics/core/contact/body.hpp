@@ -42,6 +42,8 @@ struct Body {
     /// Acceleration that the tool's contacts add to, m/s^2, m/s^2, rad/s^2.
     Twist acceleration{0.0, 0.0, 0.0};
     Surface surface;
+    /// How much of the body is there, 0 to 1: what appears or leaves under the tool fades. 1 in a snapshot.
+    double presence{1.0};
     /// Range of this body's pieces in the piece array.
     std::int32_t first_piece{0};
     std::int32_t piece_count{0};

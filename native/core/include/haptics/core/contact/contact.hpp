@@ -77,6 +77,8 @@ struct Patch {
     std::array<PatchPoint, 2> point;
     /// Combined surface of the two sides.
     Surface surface;
+    /// How much of the matter behind the patch is there, 0 to 1 (see Body::presence).
+    double presence{1.0};
     PatchMemory memory;
     PatchSide side;
 };

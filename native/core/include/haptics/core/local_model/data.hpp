@@ -8,19 +8,23 @@
 #include <haptics/core/local_model/movable.hpp>
 #include <haptics/core/local_model/neighborhood.hpp>
 #include <haptics/core/local_model/plan.hpp>
+#include <haptics/core/local_model/track.hpp>
 
 #include <array>
 #include <cstdint>
 
 namespace haptics {
 
-/// Where a kinematic neighbor is extrapolated from.
-struct Track {
-    Pose pose{0.0, 0.0, 0.0};
-    Twist velocity{0.0, 0.0, 0.0};
-    /// Distance between where the body was drawn from the last snapshot and where the new one has it: taken
-    /// away within one tick.
-    Pose offset{0.0, 0.0, 0.0};
+/// Neighbors that the next snapshot no longer lists but that the tool still touches; scratch memory of
+/// take_neighborhood.
+struct Leavers {
+    static constexpr int k_bodies = 8;
+    static constexpr int k_pieces = 64;
+    std::int32_t body_count{0};
+    std::int32_t piece_count{0};
+    std::array<Body, k_bodies> body;
+    std::array<Track, k_bodies> track;
+    std::array<Piece, k_pieces> piece;
 };
 
 /// What a joint of the tool remembers from step to step.
@@ -61,10 +65,15 @@ struct Data {
     std::uint64_t sequence{0};
     double snapshot_time{0.0};
     double tick{1.0 / 60.0};
+    /// How late snapshots come, as far as the last ones tell, s.
+    double latency{0.0};
     Vec2 gravity{0.0, 0.0};
     /// Stages that run.
     Plan plan;
+    /// One per neighbor. Neighbors that fade out come after those of the snapshot.
     std::array<Track, k_max_bodies> track;
+    std::array<Track, k_max_bodies> next_track;
+    Leavers leavers;
     std::int32_t movable_count{0};
     /// Movables of the snapshot that found no place and act as kinematic (a reported fault).
     std::int32_t movable_overflow{0};

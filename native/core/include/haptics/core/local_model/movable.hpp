@@ -22,7 +22,8 @@ struct MovableBelief {
     /// About the center of mass, scene axes.
     Pose pose{0.0, 0.0, 0.0};
     Twist velocity{0.0, 0.0, 0.0};
-    /// Corrections taken over from the environment since `epoch` (sum).
+    /// Corrections taken over from the environment since `epoch`: sum of those of the velocity, and what they
+    /// and those of the pose have moved the body by.
     Pose corrected_pose{0.0, 0.0, 0.0};
     Twist corrected_velocity{0.0, 0.0, 0.0};
     /// Impulse and angular impulse that the tool has given to the body since `epoch` (N s, N s, N m s): a
@@ -37,12 +38,24 @@ struct MovableState {
     std::int32_t body{-1};
     /// First row of the body in the step's system; -1 when nothing joins it to the tool.
     std::int32_t row{-1};
-    /// Correction that is still to be blended in, and the time left for it, s.
+    /// Corrections that are still to be blended in, and the time left for it, s.
     Pose pending_pose{0.0, 0.0, 0.0};
     Twist pending_velocity{0.0, 0.0, 0.0};
     double blend_left{0.0};
     /// Of `given`, what the linkage of a jointed body has received.
     Wrench passed{0.0, 0.0, 0.0};
+    /// Part of the velocity that works off `pending_pose` and will be taken back.
+    Twist shift_velocity{0.0, 0.0, 0.0};
+    /// How far the belief is ahead of the environment, which hears of what happens here a tick later.
+    /// Derivations are in native/core/local_model/movables.cpp.
+    Pose lead{0.0, 0.0, 0.0};
+    /// `given` and `time` of the last belief that came back, and when the body was last joined to the tool.
+    Wrench heard_given{0.0, 0.0, 0.0};
+    double heard_time{0.0};
+    double joined_time{-1e300};
+    /// Mean of the last differences of velocity from the environment, and of their sizes, m/s.
+    Twist surprise{0.0, 0.0, 0.0};
+    double surprise_size{0.0};
     /// Last step in which `given` changed.
     std::uint64_t given_step{0};
 };

@@ -1,0 +1,31 @@
+#include <haptics/core/contact/overlap.hpp>
+
+#include <utility>
+
+#include "pair_contact.hpp"
+
+namespace haptics {
+
+bool overlap(const BodySet& one, std::int32_t i, const BodySet& other, std::int32_t k) {
+    const Body& a = one.body[static_cast<std::size_t>(i)];
+    const Body& b = other.body[static_cast<std::size_t>(k)];
+    const Transform at_a(a.pose);
+    const Transform at_b(b.pose);
+    contact::PlacedConvex placed_a;
+    contact::PlacedConvex placed_b;
+    Vec2 normal;
+    for (std::int32_t m = 0; m < a.piece_count; ++m) {
+        contact::place(one.piece[static_cast<std::size_t>(a.first_piece + m)].convex, at_a, placed_a);
+        for (std::int32_t n = 0; n < b.piece_count; ++n) {
+            contact::place(other.piece[static_cast<std::size_t>(b.first_piece + n)].convex, at_b, placed_b);
+            if (placed_a.count == 0 || placed_b.count == 0 || (placed_a.half_plane && placed_b.half_plane))
+                continue;
+            const bool swap = placed_a.half_plane; // the ground is always the second
+            if (contact::separate(swap ? placed_b : placed_a, swap ? placed_a : placed_b, normal) < 0.0)
+                return true;
+        }
+    }
+    return false;
+}
+
+} // namespace haptics

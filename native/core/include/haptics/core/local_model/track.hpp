@@ -1,0 +1,52 @@
+#pragma once
+/// What the local model knows of the motion of one neighbor between two snapshots.
+
+#include <haptics/core/types.hpp>
+
+#include <array>
+
+namespace haptics {
+
+/// Path of a neighbor that the scene moves, and how much of a neighbor is there while it fades in or out.
+/// Derivations are in native/core/local_model/path.cpp.
+struct Track {
+    /// The last snapshot's pose, its time, and the length of its tick, s.
+    Pose pose{0.0, 0.0, 0.0};
+    double time{0.0};
+    double tick{1.0 / 60.0};
+    /// Derivatives of the pose at `time`: from the snapshot and, where its predecessors agree, from them.
+    Twist velocity{0.0, 0.0, 0.0};
+    Vec3 acceleration{0.0, 0.0, 0.0};
+    Vec3 jerk{0.0, 0.0, 0.0};
+    /// Age up to which the body is extrapolated at full speed, s.
+    double reach{2.0 / 60.0};
+    /// The scene moves the body; false for a movable that the local model moves.
+    bool driven{true};
+    /// Stays where it is whatever its velocity says (fixed bodies).
+    bool still{false};
+
+    /// When the snapshot was taken, s; where the body was shown then less where the new path has it, and the
+    /// first two derivatives of that. The difference is gone one tick later.
+    double taken{0.0};
+    Pose offset{0.0, 0.0, 0.0};
+    Twist offset_velocity{0.0, 0.0, 0.0};
+    Vec3 offset_acceleration{0.0, 0.0, 0.0};
+
+    /// Memory of the estimate: velocity as the snapshot told it, its mean rate of change since the snapshot
+    /// before and the time between the two, and for translation and turning the recent size of that rate
+    /// and the sums that tell how late the told velocities are.
+    Twist told{0.0, 0.0, 0.0};
+    Vec3 slope{0.0, 0.0, 0.0};
+    double interval{0.0};
+    std::array<double, 2> size{0.0, 0.0};
+    std::array<double, 2> late_sum{0.0, 0.0};
+    std::array<double, 2> late_weight{0.0, 0.0};
+
+    /// Time share of the fade that is done, 0 (absent) to 1 (all there), and its direction.
+    double presence{1.0};
+    bool leaving{false};
+    /// Loop-clock time at which a leaver was no longer listed, s.
+    double left{0.0};
+};
+
+} // namespace haptics
