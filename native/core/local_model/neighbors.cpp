@@ -15,6 +15,7 @@
 // within one tick.
 
 #include <algorithm>
+#include <cmath>
 
 #include "internal.hpp"
 
@@ -22,6 +23,32 @@ namespace haptics {
 namespace {
 
 constexpr double k_rest = 0.05;
+
+// larger than anything in a scene, m, m/s, kg, …
+constexpr double k_beyond_scene = 1e9;
+
+template <class Vector>
+bool is_in_scene(const Vector& v) {
+    return (v.cwiseAbs().array() < k_beyond_scene).all(); // false for what is not a number
+}
+
+// A surface may be without bound, but not be no number.
+bool is_true_surface(const Surface& s) {
+    return s.stiffness >= 0.0 && s.damping >= 0.0 && s.static_friction >= 0.0 && s.dynamic_friction >= 0.0 &&
+           s.restitution >= 0.0 && s.restitution <= 1.0;
+}
+
+// One number that is none would stay in the proxy for ever.
+bool is_true_snapshot(const Neighborhood& n) {
+    const auto body = [](const Body& b) {
+        const bool massive =
+            b.mass > 0.0 && b.mass < k_beyond_scene && b.inertia > 0.0 && b.inertia < k_beyond_scene;
+        return is_in_scene(b.pose) && is_in_scene(b.velocity) && is_true_surface(b.surface) &&
+               (b.kind != BodyKind::movable || massive);
+    };
+    return std::isfinite(n.time) && n.tick > 0.0 && n.tick < k_beyond_scene && is_in_scene(n.gravity) &&
+           std::all_of(n.bodies.body.begin(), n.bodies.body.begin() + n.bodies.body_count, body);
+}
 
 struct Reach {
     double time;
@@ -159,7 +186,7 @@ void take_movables(const Neighborhood& n, Data& data) {
 } // namespace
 
 void take_neighborhood(const Neighborhood& n, Data& data) {
-    if (n.sequence <= data.sequence)
+    if (n.sequence <= data.sequence || !is_true_snapshot(n))
         return;
     rename_patches(data, n.bodies);
     // the offset of a body that stays: where it is now less where the new snapshot puts it now
