@@ -39,6 +39,10 @@ bool is_below(const Vector& v, double most) {
     return (v.cwiseAbs().array() < most).all(); // false for what is not a number
 }
 
+Fault without(Fault set, Fault bits) {
+    return static_cast<Fault>(static_cast<std::uint32_t>(set) & ~static_cast<std::uint32_t>(bits));
+}
+
 bool is_true_reading(const DeviceReading& r) {
     return is_below(r.pose, k_beyond_device) && (!r.has_velocity || is_below(r.velocity, k_beyond_device));
 }
@@ -293,6 +297,7 @@ void Session::read_device() {
     const std::uint64_t last = reading_.sequence;
     const double last_angle = reading_.pose.z();
     DeviceReading next = reading_;
+    next.faults = without(next.faults, Fault::check_the_encoders);
     missing_ = !device_.read(next);
     if (!missing_ && is_true_reading(next)) {
         reading_ = next;

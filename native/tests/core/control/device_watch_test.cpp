@@ -24,7 +24,10 @@ class ScriptedDevice final : public DevicePort {
             return false;
         if (!silent)
             ++next.sequence;
+        const Fault faults = reading.faults;
         reading = next;
+        if (never_faults)
+            reading.faults = faults;
         return true;
     }
     void write(const Wrench& force) override { written = force; }
@@ -35,6 +38,8 @@ class ScriptedDevice final : public DevicePort {
 
     DeviceReading next;
     Wrench written{0.0, 0.0, 0.0};
+    /// Leaves that field of a reading alone.
+    bool never_faults{false};
     bool silent{false};
     bool unplugged{false};
 };
@@ -226,6 +231,7 @@ TEST_CASE("a reading or a snapshot with what is no number is refused: a fault, a
             CAPTURE(value);
             CAPTURE(where);
             ScriptedDevice device;
+            device.never_faults = true;
             OutputGate gate{SafetyLimits{}};
             gate.set_homed(true);
             Session session(SessionSettings{}, shared::box_tool(), gate, device, Pose(0.0, 0.03, 0.0));
