@@ -1,7 +1,7 @@
 # Thin: every command is a script in tools/ or a CMake preset.
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help demo test editor run build bench experiment1 experiment2 latency sanitizers lint format clean
+.PHONY: help demo test editor run build bench experiment1 experiment2 report latency sanitizers lint format clean
 
 PRESET ?= release
 OUT ?= build/run
@@ -32,6 +32,9 @@ experiment1: ## experiment 1 of the paper: CSV, picture and table in build/exper
 
 experiment2: ## experiment 2 of the paper: CSV, picture and table in build/experiment2
 	@tools/run/experiment2
+
+report: ## the laboratory report: error against run time, stability, plans; build/report/index.html (QUICK=1: rates and maps coarser)
+	@tools/run/report $(if $(filter 1,$(QUICK)),--quick)
 
 bench: ## the benchmarks (ARGS="--benchmark_filter=…"); JSON in build/bench.json
 	@tools/run/bench $(ARGS)

@@ -118,7 +118,12 @@ void collide_pieces(const Search& search, const Actor& a, const Piece& piece_a, 
     draft.patch.normal = contact.normal;
     draft.patch.point_count = contact.count;
     draft.patch.point = contact.point;
-    draft.patch.surface = combine(a.body->surface, b.body->surface);
+    // two that are infinitely hard meet at the hardest that a surface may be
+    constexpr double k_hardest = 1e12;
+    Surface& surface = draft.patch.surface;
+    surface = combine(a.body->surface, b.body->surface);
+    surface.stiffness = std::min(surface.stiffness, k_hardest);
+    surface.damping = std::min(surface.damping, k_hardest);
     draft.patch.presence = std::min(a.body->presence, b.body->presence);
     write_side(a, b, contact, side);
     search.drafts.add(draft);

@@ -31,6 +31,22 @@ double pass_fraction(const Wrench& command, const GateOutput& gate, double last)
     return std::clamp(gate.applied.dot(command) / (gate.fade * size), 0.0, 1.0);
 }
 
+// beyond any device, m and m/s, N
+constexpr double k_beyond_device = 1e4;
+
+template <class Vector>
+bool is_below(const Vector& v, double most) {
+    return (v.cwiseAbs().array() < most).all(); // false for what is not a number
+}
+
+Fault without(Fault set, Fault bits) {
+    return static_cast<Fault>(static_cast<std::uint32_t>(set) & ~static_cast<std::uint32_t>(bits));
+}
+
+bool is_true_reading(const DeviceReading& r) {
+    return is_below(r.pose, k_beyond_device) && (!r.has_velocity || is_below(r.velocity, k_beyond_device));
+}
+
 // a handle is moved on by its velocity for so long, s; beyond that the velocity says too little
 constexpr double k_most_ahead = 0.003;
 
@@ -273,7 +289,16 @@ double Session::stored_energy() const {
 void Session::read_device() {
     const std::uint64_t last = reading_.sequence;
     const double last_angle = reading_.pose.z();
-    missing_ = !device_.read(reading_);
+    DeviceReading next = reading_;
+    next.faults = without(next.faults, Fault::check_the_encoders);
+    missing_ = !device_.read(next);
+    if (!missing_ && is_true_reading(next)) {
+        reading_ = next;
+    } else if (!missing_) {
+        // what is not a number would stay in the proxy for ever: such a reading counts as none
+        missing_ = true;
+        reading_.faults = reading_.faults | Fault::check_the_encoders;
+    }
     fresh_ = !missing_ && (reading_.sequence != last || last == 0);
     // a device that found or lost its zero, or was away, may be anywhere
     const bool homed_anew = !missing_ && reading_.homings != homings_;
@@ -304,7 +329,7 @@ void Session::read_device() {
         freeze_offset();
     }
     hand_force_.setZero();
-    if (reading_.has_hand_force)
+    if (reading_.has_hand_force && is_below(reading_.hand_force, k_beyond_device))
         hand_force_ = settings_.mapping.wrench_to_scene(reading_.hand_force);
     else if (observer_)
         hand_force_ = settings_.mapping.wrench_to_scene(observer_->hand_force());

@@ -17,6 +17,9 @@ namespace {
 
 // closed to within this, m: far below what can be felt, far above rounding
 constexpr double k_closed = 1e-6;
+// where a stretch of the exact integrator stops for a hit, up to rounding, m: taken wider, a hit would be
+// resolved above the surface, and the contact count as open right after
+constexpr double k_reached = 1e-9;
 
 double rate(const ContactSystem& s, int point) {
     return s.normal_rows.row(point).dot(s.velocity) - s.point[static_cast<std::size_t>(point)].drive;
@@ -30,7 +33,7 @@ bool hits_now(const Model& model, const Data& data) {
     const ContactSystem& s = data.system;
     for (int i = 0; i < s.points; ++i) {
         const PointRow& p = s.point[static_cast<std::size_t>(i)];
-        if (p.gap <= k_closed && may_collide(s, p) && -rate(s, i) > model.settings.collision_speed)
+        if (p.gap <= k_reached && may_collide(s, p) && -rate(s, i) > model.settings.collision_speed)
             return true;
     }
     return false;

@@ -26,6 +26,32 @@ constexpr double k_turn = 6.28318530717958647692;
 // a body that would have to be faster than this to get where the snapshot has it has been put there, m/s
 constexpr double k_teleport = 5.0;
 
+// larger than anything in a scene, m, m/s, kg, …
+constexpr double k_beyond_scene = 1e9;
+
+template <class Vector>
+bool is_in_scene(const Vector& v) {
+    return (v.cwiseAbs().array() < k_beyond_scene).all(); // false for what is not a number
+}
+
+// A surface may be without bound, but not be no number.
+bool is_true_surface(const Surface& s) {
+    return s.stiffness >= 0.0 && s.damping >= 0.0 && s.static_friction >= 0.0 && s.dynamic_friction >= 0.0 &&
+           s.restitution >= 0.0 && s.restitution <= 1.0;
+}
+
+// One number that is none would stay in the proxy for ever.
+bool is_true_snapshot(const Neighborhood& n) {
+    const auto body = [](const Body& b) {
+        const bool massive =
+            b.mass > 0.0 && b.mass < k_beyond_scene && b.inertia > 0.0 && b.inertia < k_beyond_scene;
+        return is_in_scene(b.pose) && is_in_scene(b.velocity) && is_true_surface(b.surface) &&
+               (b.kind != BodyKind::movable || massive);
+    };
+    return std::isfinite(n.time) && n.tick > 0.0 && n.tick < k_beyond_scene && is_in_scene(n.gravity) &&
+           std::all_of(n.bodies.body.begin(), n.bodies.body.begin() + n.bodies.body_count, body);
+}
+
 void place(Data& data, std::size_t i) {
     const PathPoint p = shown(data.track[i], data.time);
     data.neighbors.body[i].pose = p.pose;
@@ -140,7 +166,7 @@ bool is_beyond_plan(const Neighborhood& n, const Data& data) {
 } // namespace
 
 void take_neighborhood(const Neighborhood& n, Data& data) {
-    if (n.sequence <= data.sequence)
+    if (n.sequence <= data.sequence || !is_true_snapshot(n))
         return;
     learn_latency(n, data);
     const bool first = data.sequence == 0; // what the loop starts in has been there before

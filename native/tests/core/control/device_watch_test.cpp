@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <numbers>
 
@@ -23,7 +24,10 @@ class ScriptedDevice final : public DevicePort {
             return false;
         if (!silent)
             ++next.sequence;
+        const Fault faults = reading.faults;
         reading = next;
+        if (never_faults)
+            reading.faults = faults;
         return true;
     }
     void write(const Wrench& force) override { written = force; }
@@ -34,6 +38,8 @@ class ScriptedDevice final : public DevicePort {
 
     DeviceReading next;
     Wrench written{0.0, 0.0, 0.0};
+    /// Leaves that field of a reading alone.
+    bool never_faults{false};
     bool silent{false};
     bool unplugged{false};
 };
@@ -215,4 +221,63 @@ TEST_CASE("the model steps at 4 kHz on a device of 1 kHz: a push of 2 N comes ba
     CHECK(session.report().faults == Fault::none);
     CHECK(sum / k_tail == doctest::Approx(2.0).epsilon(0.01));
     CHECK(high - low < 0.1);
+}
+
+TEST_CASE("a reading or a snapshot with what is no number is refused: a fault, and afterwards all is well") {
+    const double bad[] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+                          1e308};
+    for (const double value : bad)
+        for (int where = 0; where < 10; ++where) {
+            CAPTURE(value);
+            CAPTURE(where);
+            ScriptedDevice device;
+            device.never_faults = true;
+            OutputGate gate{SafetyLimits{}};
+            gate.set_homed(true);
+            Session session(SessionSettings{}, shared::box_tool(), gate, device, Pose(0.0, 0.03, 0.0));
+            auto scene = shared::floor_of(1);
+            session.take(*scene);
+            const auto run = [&](int steps) {
+                for (int i = 0; i < steps; ++i) {
+                    session.step();
+                    CHECK(device.written.allFinite());
+                    REQUIRE(session.report().proxy.allFinite());
+                    REQUIRE(session.report().contact.allFinite());
+                }
+            };
+            run(200);
+            REQUIRE(session.report().armed);
+            const DeviceReading good = device.next;
+            auto broken = std::make_unique<Neighborhood>(*scene);
+            Body& body = broken->bodies.body[0];
+            broken->sequence = 2;
+            double* const fields[] = {&body.pose.y(), &body.velocity.x(), &broken->gravity.y(), &broken->tick,
+                                      &body.mass};
+            if (where < 2)
+                device.next.pose[where] = value;
+            device.next.has_velocity = where == 2;
+            if (where == 2)
+                device.next.velocity.y() = value;
+            device.next.has_hand_force = where == 3;
+            if (where == 3)
+                device.next.hand_force.y() = value;
+            if (where >= 5)
+                *fields[where - 5] = value;
+            if (where == 9)
+                body.kind = BodyKind::movable;
+            if (where >= 5)
+                session.take(*broken);
+            run(3);
+            CHECK(has(session.report().faults, Fault::check_the_encoders) == (where < 3));
+            const std::uint64_t sequence = device.next.sequence;
+            device.next = good;
+            device.next.sequence = sequence;
+            scene->sequence = 3;
+            session.take(*scene);
+            run(200);
+            session.arm();
+            run(200);
+            CHECK(session.report().armed);
+            CHECK(session.report().faults == Fault::none);
+        }
 }

@@ -5,65 +5,23 @@
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iomanip>
 
 using namespace haptics;
-using shared::Experiment1;
 using shared::Experiment1Options;
 
 namespace {
 
-struct Outcome {
-    /// From the first touch until the contact force stays within 0.2 N of the push, s; negative when it never
-    /// does.
-    double settling{-1.0};
-    /// Peak to peak in the last second: contact force (N) and handle (m).
-    double force_swing{0.0};
-    double handle_swing{0.0};
-    double energy{0.0};
-    double stiffness{0.0};
-};
-
-Outcome run(const Experiment1Options& options) {
-    Experiment1 e(options);
-    const int steps = static_cast<int>(4.0 * options.rate_hz);
-    double touch = -1.0;
-    double unsettled = 0.0;
-    double force[2] = {1e300, -1e300};
-    double handle[2] = {1e300, -1e300};
-    for (int i = 0; i < steps; ++i) {
-        e.session->step();
-        const HapticReport& r = e.session->report();
-        if (touch < 0.0 && r.contacts > 0)
-            touch = r.time;
-        if (std::abs(r.contact.y() - options.push) > 0.2)
-            unsettled = r.time;
-        if (r.time <= 3.0)
-            continue;
-        const double y = e.device->true_pose().y();
-        force[0] = std::min(force[0], r.contact.y());
-        force[1] = std::max(force[1], r.contact.y());
-        handle[0] = std::min(handle[0], y);
-        handle[1] = std::max(handle[1], y);
-    }
-    Outcome o;
-    o.settling = unsettled < 3.0 ? unsettled - touch : -1.0;
-    o.force_swing = force[1] - force[0];
-    o.handle_swing = handle[1] - handle[0];
-    o.energy = e.session->report().energy_injected;
-    o.stiffness = e.session->gains().stiffness.y();
-    return o;
-}
+using Outcome = shared::Experiment1Outcome;
 
 Outcome run(ContactMode contact, double tool, double gain) {
     Experiment1Options o;
     o.contact = contact;
     o.tool_mass = tool;
     o.gain = gain;
-    return run(o);
+    return shared::outcome_of(o);
 }
 
 void write_table(const char* path) {

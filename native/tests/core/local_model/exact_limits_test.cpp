@@ -215,6 +215,23 @@ TEST_CASE("exact: every stiffness, damping, mass and step gives a finite motion"
                 }
 }
 
+TEST_CASE("exact: a hit is resolved at the surface, not where a step happens to begin just above it") {
+    Model model = shared::box_tool();
+    model.settings.integrator = Integrator::exact;
+    auto data = std::make_unique<Data>();
+    constexpr double k_gap = 5e-7;
+    reset(model, *data, Pose(0.0, 0.01 + k_gap, 0.0));
+    data->velocity.y() = -0.2;
+    take_neighborhood(*shared::floor_of(1), *data);
+    StepOutput out;
+    step(model, *data, HandInput{}, 1e-6, out);
+    CHECK(out.collision_impulse.y() == 0.0);
+    CHECK(data->pose.y() == within(0.01 + k_gap - 2e-7, 1e-12));
+    step(model, *data, HandInput{}, 1e-5, out);
+    CHECK(out.collision_impulse.y() == within(0.3 * 0.2, 1e-9));
+    CHECK(std::abs(data->pose.y() - 0.01) < 1e-12);
+}
+
 TEST_CASE("exact: a bounce that begins and ends within a step is told as one touch") {
     Surface s;
     s.stiffness = 1e8;

@@ -1,5 +1,6 @@
 #include <haptics/core/local_model/local_model.hpp>
 #include <haptics/shared/paper_wall.hpp>
+#include <haptics/sweep/reference_disc.hpp>
 
 #include <doctest/doctest.h>
 
@@ -8,12 +9,11 @@
 #include <numbers>
 #include <sstream>
 
-#include "core/local_model/exact_reference.hpp"
 #include "support/random.hpp"
 
 using namespace haptics;
-using testing::ReferenceDisc;
-using testing::ReferenceWall;
+using sweep::ReferenceDisc;
+using sweep::ReferenceWall;
 
 namespace {
 

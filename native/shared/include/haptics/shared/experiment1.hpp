@@ -6,6 +6,8 @@
 #include <haptics/devices/simulated/simulated_pantograph.hpp>
 #include <haptics/shared/paper_wall.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 
 namespace haptics::shared {
@@ -27,6 +29,8 @@ struct Experiment1Options {
     bool measures_force{true};
     /// Distance from tool to wall at the start, m.
     double distance{0.02};
+    /// Coupling that does not follow the rate; all zero for the rate's own.
+    CouplingGains fixed_gains;
 };
 
 struct Experiment1 {
@@ -55,6 +59,8 @@ struct Experiment1 {
         s.gains = default_gains(mass, Mat3::Zero(), s.step, 0.0, 1);
         s.gains.stiffness *= o.gain;
         s.gains.damping *= std::sqrt(o.gain);
+        if (!o.fixed_gains.stiffness.isZero())
+            s.gains = o.fixed_gains;
         SafetyLimits limits;
         limits.max_force = 20.0;
         OutputGate gate(limits, device->kinematics());
@@ -65,5 +71,53 @@ struct Experiment1 {
     std::unique_ptr<SimulatedPantograph> device;
     std::unique_ptr<Session> session;
 };
+
+/// What becomes of four seconds of it.
+struct Experiment1Outcome {
+    /// From the first touch until the contact force stays within 0.2 N of the push, s; negative when it never
+    /// does.
+    double settling{-1.0};
+    /// Peak to peak in the last second: contact force (N) and handle (m).
+    double force_swing{0.0};
+    double handle_swing{0.0};
+    /// Created by the controller, J.
+    double energy{0.0};
+    /// Coupling, N/m.
+    double stiffness{0.0};
+    /// Largest force that left the gate, N.
+    double largest_force{0.0};
+};
+
+inline Experiment1Outcome outcome_of(const Experiment1Options& options) {
+    Experiment1 e(options);
+    const int steps = static_cast<int>(4.0 * options.rate_hz);
+    double touch = -1.0;
+    double unsettled = 0.0;
+    double force[2] = {1e300, -1e300};
+    double handle[2] = {1e300, -1e300};
+    for (int i = 0; i < steps; ++i) {
+        e.session->step();
+        const HapticReport& r = e.session->report();
+        if (touch < 0.0 && r.contacts > 0)
+            touch = r.time;
+        if (std::abs(r.contact.y() - options.push) > 0.2)
+            unsettled = r.time;
+        if (r.time <= 3.0)
+            continue;
+        const double y = e.device->true_pose().y();
+        force[0] = std::min(force[0], r.contact.y());
+        force[1] = std::max(force[1], r.contact.y());
+        handle[0] = std::min(handle[0], y);
+        handle[1] = std::max(handle[1], y);
+    }
+    Experiment1Outcome o;
+    o.settling = unsettled < 3.0 ? unsettled - touch : -1.0;
+    o.force_swing = force[1] - force[0];
+    o.handle_swing = handle[1] - handle[0];
+    o.energy = e.session->report().energy_injected;
+    o.stiffness = e.session->gains().stiffness.y();
+    o.largest_force = e.session->report().run.max_force;
+    return o;
+}
 
 } // namespace haptics::shared

@@ -1,17 +1,20 @@
 #pragma once
-// An independent reference for linear contact: a disc among straight walls, held by a spring-damper, in tiny
-// steps of the classical Runge-Kutta method between events that are found by halving. Its normals do not
-// turn, and its inertia is taken so large that it does not turn itself (the lever of friction changes with
-// the gap), so that the only error is the time step's. Nothing here is shared with the code under test but
-// the contact law, which is written down again.
+/// An independent reference for linear contact: a disc among straight walls, held by a spring-damper, in tiny
+/// steps of the classical Runge-Kutta method between events that are found by halving. Its normals do not
+/// turn, and its inertia is taken so large that it does not turn itself (the lever of friction changes with
+/// the gap), so that the only error is the time step's. Nothing here is shared with the code under test but
+/// the contact law, which is written down again.
 
 #include <haptics/core/types.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
-namespace haptics::testing {
+namespace haptics::sweep {
 
+/// A wall, its contact law and its present state.
 struct ReferenceWall {
     Vec2 point;
     Vec2 normal;
@@ -26,10 +29,14 @@ struct ReferenceWall {
     double anchor{0.0};
     // integrals of the forces since the last clear()
     Vec2 impulse{0.0, 0.0};
+    // share of the normal speed that a collision gives back, when there are collision impulses
+    double restitution{0.0};
 };
 
+/// The disc; `pose`, `velocity` and `walls` are set by the user.
 class ReferenceDisc {
   public:
+    /// kg, m.
     double mass;
     double radius;
     Vec3 pose{0.0, 0.0, 0.0};
@@ -41,6 +48,11 @@ class ReferenceDisc {
     Vec3 target{0.0, 0.0, 0.0};
     Vec3 target_velocity{0.0, 0.0, 0.0};
     Vec3 coupling_impulse{0.0, 0.0, 0.0};
+    /// Where the hand is at a time, instead of a target of constant velocity.
+    std::function<void(double time, Vec3& target, Vec3& velocity)> path;
+    double time{0.0};
+    /// Touches that close faster than this give a collision impulse (without friction), m/s; negative: none.
+    double collision_speed{-1.0};
     int events{0};
     // the law was at a tie, which rounding decides
     bool tie{false};
@@ -51,15 +63,15 @@ class ReferenceDisc {
             w.impulse.setZero();
     }
 
-    // goes on by `time` in steps of at most `h`
-    void advance(double time, double h) {
+    /// Goes on by `duration` (s) in steps of at most `h` (s).
+    void advance(double duration, double h) {
         settle();
-        while (time > 0.0) {
-            const double step = std::min(h, time);
+        while (duration > 0.0) {
+            const double step = std::min(h, duration);
             const State start = state();
             runge_kutta(step);
             if (which_ended() < 0) {
-                time -= step;
+                duration -= step;
                 continue;
             }
             double low = 0.0;
@@ -72,7 +84,7 @@ class ReferenceDisc {
             }
             put(start);
             runge_kutta(high);
-            time -= high;
+            duration -= high;
             change(which_ended());
             ++events;
             settle();
@@ -81,14 +93,14 @@ class ReferenceDisc {
 
   private:
     // x, v, impulse of coupling, impulses of walls
-    static constexpr int k_most = 12 + 2 * 6;
+    static constexpr int k_most = 13 + 2 * 6;
     using State = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, k_most, 1>;
 
     [[nodiscard]] State state() const {
-        State s(12 + 2 * static_cast<Eigen::Index>(walls.size()));
-        s.head<12>() << pose, velocity, coupling_impulse, target;
+        State s(13 + 2 * static_cast<Eigen::Index>(walls.size()));
+        s.head<13>() << pose, velocity, coupling_impulse, target, time;
         for (std::size_t i = 0; i < walls.size(); ++i)
-            s.segment<2>(12 + 2 * static_cast<Eigen::Index>(i)) = walls[i].impulse;
+            s.segment<2>(13 + 2 * static_cast<Eigen::Index>(i)) = walls[i].impulse;
         return s;
     }
     void put(const State& s) {
@@ -96,8 +108,11 @@ class ReferenceDisc {
         velocity = s.segment<3>(3);
         coupling_impulse = s.segment<3>(6);
         target = s.segment<3>(9);
+        time = s[12];
+        if (path)
+            path(time, target, target_velocity);
         for (std::size_t i = 0; i < walls.size(); ++i)
-            walls[i].impulse = s.segment<2>(12 + 2 * static_cast<Eigen::Index>(i));
+            walls[i].impulse = s.segment<2>(13 + 2 * static_cast<Eigen::Index>(i));
     }
     void runge_kutta(double h) {
         const State s = state();
@@ -154,13 +169,14 @@ class ReferenceDisc {
         return {force.x() / mass, force.y() / mass, 0.0};
     }
     [[nodiscard]] State derivative() const {
-        State d = State::Zero(12 + 2 * static_cast<Eigen::Index>(walls.size()));
+        State d = State::Zero(13 + 2 * static_cast<Eigen::Index>(walls.size()));
         d.segment<3>(0) = velocity;
         d.segment<3>(3) = acceleration();
         d.segment<3>(6) = coupling();
         d.segment<3>(9) = target_velocity;
+        d[12] = 1.0;
         for (std::size_t i = 0; i < walls.size(); ++i)
-            d.segment<2>(12 + 2 * static_cast<Eigen::Index>(i)) = Vec2(normal(walls[i]), tangent(walls[i]));
+            d.segment<2>(13 + 2 * static_cast<Eigen::Index>(i)) = Vec2(normal(walls[i]), tangent(walls[i]));
         return d;
     }
 
@@ -201,6 +217,14 @@ class ReferenceDisc {
             return;
         ReferenceWall& w = walls[static_cast<std::size_t>(which / 2)];
         if (which % 2 == 0) {
+            const double speed = -gap_rate(w);
+            if (!w.pressing && collision_speed >= 0.0 && speed > collision_speed) {
+                const double change = (1.0 + w.restitution) * speed;
+                velocity.head<2>() += change * w.normal;
+                w.impulse.x() += mass * change;
+                if (w.restitution > 0.0)
+                    return;
+            }
             w.pressing = !w.pressing;
             w.mode = w.pressing && w.static_friction > 0.0 ? 1 : 0;
             w.anchor = along(w);
@@ -230,4 +254,4 @@ class ReferenceDisc {
     }
 };
 
-} // namespace haptics::testing
+} // namespace haptics::sweep
