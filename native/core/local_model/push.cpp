@@ -25,7 +25,7 @@
 namespace haptics::local {
 namespace {
 
-constexpr int k_sweeps = 12;
+constexpr int k_push_sweeps = 12;
 // one row for each point and one for the friction of each patch
 constexpr int k_most = k_max_points + k_max_rows;
 
@@ -73,7 +73,7 @@ class Push {
         push_ += part * all;
         for (int k = 0; k < count_; ++k)
             answer_[static_cast<std::size_t>(k)].share = part * answer_[static_cast<std::size_t>(k)].most;
-        for (int sweep = 0; sweep < k_sweeps; ++sweep)
+        for (int sweep = 0; sweep < k_push_sweeps; ++sweep)
             for (int k = 0; k < count_; ++k)
                 relax(answer_[static_cast<std::size_t>(k)]);
     }

@@ -39,14 +39,52 @@ std::vector<Line> lossy_lines() {
             {"lossy", 120.0, 0.08, 0.02, true, 0.2}};
 }
 
-// Lines over which the bound on the jump of force does not hold (docs/physics.md): what is 100 ms old, uneven
-// by several ticks or lost is extrapolated so far that to correct it within one tick takes more.
+// What is old, uneven by several ticks or lost is extrapolated so far that a swinging wall may be met earlier
+// or later than in truth.
 bool is_far(const Line& line) {
     return line.delay >= 0.1 || line.jitter * line.rate > 1.0 || line.lost > 0.0;
 }
 
-// most seen over those, times the bound
-constexpr double k_far_jump = 14.0;
+// Where the bound on the jump of force at an update does not hold (docs/late-geometry.md): the ratio to the
+// bound that was seen. Everywhere else it is at most 1.
+struct Beyond {
+    const char* name;
+    double rate;
+    double delay;
+    double lost;
+    Motion motion;
+    double stiffness;
+    double seen;
+};
+constexpr Beyond k_beyond[] = {
+    {"even", 20.0, 0.1, 0.0, Motion::sine, 5000.0, 1.08},
+    {"even", 60.0, 0.1, 0.0, Motion::sine, 5000.0, 1.47},
+    {"even", 60.0, 0.1, 0.0, Motion::swing, 5000.0, 1.90},
+    {"even", 120.0, 0.1, 0.0, Motion::sine, 5000.0, 1.71},
+    {"even", 120.0, 0.1, 0.0, Motion::swing, 5000.0, 7.39},
+    {"jittered", 120.0, 0.06, 0.0, Motion::sine, 15000.0, 1.23},
+    {"jittered", 120.0, 0.06, 0.0, Motion::sine, 5000.0, 4.07},
+    {"jittered", 120.0, 0.06, 0.0, Motion::swing, 5000.0, 2.97},
+    {"lossy", 60.0, 0.02, 0.1, Motion::constant, 15000.0, 1.74},
+    {"lossy", 60.0, 0.02, 0.3, Motion::constant, 15000.0, 6.52},
+    {"lossy", 60.0, 0.02, 0.3, Motion::sine, 15000.0, 3.96},
+    {"lossy", 60.0, 0.02, 0.3, Motion::swing, 15000.0, 1.41},
+    {"lossy", 60.0, 0.02, 0.3, Motion::cam, 15000.0, 6.69},
+    {"lossy", 60.0, 0.02, 0.3, Motion::sine, 5000.0, 1.72},
+    {"lossy", 120.0, 0.08, 0.2, Motion::sine, 15000.0, 1.84},
+    {"lossy", 120.0, 0.08, 0.2, Motion::swing, 15000.0, 1.18},
+    {"lossy", 120.0, 0.08, 0.2, Motion::sine, 5000.0, 6.59},
+    {"lossy", 120.0, 0.08, 0.2, Motion::swing, 5000.0, 3.44},
+};
+
+// most that the ratio may be; what was seen beyond the bound has a tenth of room for other compilers
+double allowed_ratio(const Line& line, Motion motion, double stiffness) {
+    for (const Beyond& b : k_beyond)
+        if (line.name == b.name && line.rate == b.rate && line.delay == b.delay && line.lost == b.lost &&
+            motion == b.motion && stiffness == b.stiffness)
+            return 1.1 * b.seen;
+    return 1.0;
+}
 
 Press press_of(double stiffness, double damping, double force) {
     Press p;
@@ -100,8 +138,9 @@ TEST_CASE("an update changes the force by no more than 7 % or 0.05 N beyond what
                     const std::string moves = name_of(motion);
                     CAPTURE(moves);
                     CAPTURE(press.surface.stiffness);
+                    CAPTURE(line.lost);
                     const Figures f = compare(motion, line, Use::ours, press, 2.5);
-                    CHECK(f.jump_ratio < (is_far(line) ? k_far_jump : 1.0));
+                    CHECK(f.jump_ratio < allowed_ratio(line, motion, press.surface.stiffness));
                     if (!is_far(line))
                         CHECK(f.colliding == f.colliding_true); // a swinging wall rocks the tool
                 }
