@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace haptics {
 namespace {
@@ -293,7 +294,7 @@ void Session::read_device() {
     next.faults = without(next.faults, Fault::check_the_encoders);
     missing_ = !device_.read(next);
     if (!missing_ && is_true_reading(next)) {
-        reading_ = next;
+        reading_ = std::move(next);
     } else if (!missing_) {
         // what is not a number would stay in the proxy for ever: such a reading counts as none
         missing_ = true;

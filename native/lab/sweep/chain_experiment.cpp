@@ -22,13 +22,13 @@ namespace {
 constexpr int k_links = 3;
 constexpr double k_length = 0.1;
 constexpr double k_link_mass = 0.1;
-const Vec2 k_gravity{0.0, -9.81};
+constexpr double k_gravity = -9.81;
 
 LinkageModel chain_model(bool gravity, bool coriolis) {
     LinkageSpec spec;
     spec.coriolis = coriolis;
     if (gravity)
-        spec.gravity = k_gravity;
+        spec.gravity = Vec2(0.0, k_gravity);
     for (int i = 0; i < k_links; ++i) {
         LinkSpec link;
         link.parent = i - 1;
@@ -92,7 +92,7 @@ class LocalChainRun final : public Run {
         reset(model_, *data_, start_of_chain());
         Neighborhood scene;
         scene.sequence = 1;
-        scene.gravity = k_gravity;
+        scene.gravity = Vec2(0.0, k_gravity);
         scene.plan = choose_plan(model_, scene);
         take_neighborhood(scene, *data_);
     }
