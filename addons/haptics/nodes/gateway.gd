@@ -149,6 +149,12 @@ func stop() -> void:
 	server().world_stop(_world)
 
 
+## What a simulated device had been sent last when the world stopped: N, N, N m; empty while it
+## runs.
+func get_last_force() -> PackedFloat64Array:
+	return server().world_get_last_force(_world)
+
+
 ## True between start and stop.
 func is_running() -> bool:
 	return server().world_is_running(_world)

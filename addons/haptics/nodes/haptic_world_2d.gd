@@ -200,7 +200,7 @@ func _notification(what: int) -> void:
 			stop()
 		NOTIFICATION_PAUSED, NOTIFICATION_UNPAUSED:
 			if is_running():
-				_session.native.set_paused(what == NOTIFICATION_PAUSED)
+				_session.pause(what == NOTIFICATION_PAUSED)
 	_warnings.follow(what)
 
 

@@ -33,6 +33,7 @@ var _links: Array[HapticLink2D] = []
 var _cursor: HapticHandCursor2D
 var _is_lockstep := false
 var _is_stalled := false
+var _is_paused := false
 var _reach := Reach.new()
 var _touches: TouchSignals
 var _top_speed := 0.0
@@ -151,6 +152,12 @@ func show() -> void:
 			(tool as HeldBody).carry()
 		_touches.emit(native.take_events(), native.get_touched(), units, neighborhood.body_of)
 	_emit_faults()
+
+
+## The scene's tree pauses, or goes on.
+func pause(paused: bool) -> void:
+	_is_paused = paused
+	_tell_pause()
 
 
 ## What touches now.
@@ -327,8 +334,12 @@ func _let_go() -> void:
 func _stall(stalled: bool) -> bool:
 	if stalled != _is_stalled:
 		_is_stalled = stalled
-		native.set_paused(stalled)
+		_tell_pause()
 	return stalled
+
+
+func _tell_pause() -> void:
+	native.set_paused(_is_paused or _is_stalled)
 
 
 # the loop runs in real time: velocities of the scene go with its time scale, accelerations twice

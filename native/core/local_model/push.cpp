@@ -27,7 +27,7 @@ namespace {
 
 constexpr int k_push_sweeps = 12;
 // one row for each point and one for the friction of each patch
-constexpr int k_most = k_max_points + k_max_rows;
+constexpr int k_most_answers = k_max_points + k_max_rows;
 
 struct Answer {
     bool tangent;
@@ -147,7 +147,7 @@ class Push {
         FreedomVector row = FreedomVector::Zero(s_.freedoms);
         add(a, 1.0, row);
         a.mobility = row.dot(inverse(row));
-        if (a.mobility > 0.0 && count_ < k_most)
+        if (a.mobility > 0.0 && count_ < k_most_answers)
             answer_[static_cast<std::size_t>(count_++)] = a;
     }
 
@@ -174,7 +174,7 @@ class Push {
     const double* tangent_;
     FreedomVector push_;
     int count_{0};
-    std::array<Answer, k_most> answer_;
+    std::array<Answer, k_most_answers> answer_;
 };
 
 } // namespace

@@ -158,6 +158,7 @@ void SimulatedPantograph::slip_encoder(int axis, double counts) {
 void SimulatedPantograph::write(const Wrench& force) {
     Command given;
     given.wrench = force.allFinite() ? force : Wrench(Wrench::Zero());
+    written_ = given.wrench;
     if (freedoms() == 2)
         given.wrench.z() = 0.0;
     const bool linkage = options_.inertia_model == InertiaModel::linkage;

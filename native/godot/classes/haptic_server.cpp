@@ -147,6 +147,14 @@ void HapticServer::world_stop(int64_t world) {
         w->stop();
 }
 
+PackedFloat64Array HapticServer::world_get_last_force(int64_t world) const {
+    const HapticWorld* w = find(world);
+    if (w == nullptr || w->running())
+        return {};
+    const Wrench& force = w->last_force();
+    return PackedFloat64Array({force.x(), force.y(), force.z()});
+}
+
 bool HapticServer::world_is_running(int64_t world) const {
     const HapticWorld* w = find(world);
     return w != nullptr && w->running();
@@ -414,6 +422,7 @@ void HapticServer::_bind_methods() {
     ClassDB::bind_method(D_METHOD("world_start", "world", "realtime", "record_seconds"),
                          &HapticServer::world_start, DEFVAL(0.0));
     ClassDB::bind_method(D_METHOD("world_stop", "world"), &HapticServer::world_stop);
+    ClassDB::bind_method(D_METHOD("world_get_last_force", "world"), &HapticServer::world_get_last_force);
     ClassDB::bind_method(D_METHOD("world_is_running", "world"), &HapticServer::world_is_running);
     ClassDB::bind_method(D_METHOD("world_submit", "world", "bodies", "states", "tick", "gravity", "discs"),
                          &HapticServer::world_submit);

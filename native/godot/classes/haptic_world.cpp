@@ -245,6 +245,10 @@ void HapticWorld::stop() {
     if (runner_ != nullptr) {
         runner_->stop();
         refresh();
+        // a thread does that when it ends
+        if (!realtime_)
+            runner_->session().shut_off();
+        last_force_ = device_->last_force();
     }
     runner_.reset();
     device_.reset();

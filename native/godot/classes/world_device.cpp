@@ -62,6 +62,7 @@ class SimulatedDevice final : public WorldDevice {
         return {half * reach, half * reach, lever > 0.0 ? 2.0 * half * reach / lever : half};
     }
     StepHook* hook() override { return &hook_; }
+    [[nodiscard]] Wrench last_force() const override { return device_.written(); }
     void aim(const Pose& grip) override { hook_.aim(grip); }
 
   private:

@@ -108,6 +108,8 @@ class SimulatedPantograph final : public DevicePort {
     [[nodiscard]] const Wrench& hand_force() const { return hand_force_; }
     /// Force of the motors at the end of the last advance, after delay and limits (N, N, N m).
     [[nodiscard]] const Wrench& motor_force() const { return motor_force_; }
+    /// The force written last (N, N, N m), before delay; zero when it was not finite.
+    [[nodiscard]] const Wrench& written() const { return written_; }
     /// Lets encoder `axis` slip by `counts` (joint encoders).
     void slip_encoder(int axis, double counts);
     /// Finds the encoders' zeros again: undoes every slip.
@@ -152,6 +154,7 @@ class SimulatedPantograph final : public DevicePort {
     JointVector slip_{JointVector::Zero()};
     /// Friction impulses of the joints in the last sub-step, N m s.
     JointVector rubbing_{JointVector::Zero()};
+    Wrench written_{0.0, 0.0, 0.0};
     Wrench motor_force_{0.0, 0.0, 0.0};
     Wrench hand_force_{0.0, 0.0, 0.0};
     double time_{0.0};

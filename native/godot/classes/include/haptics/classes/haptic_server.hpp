@@ -80,6 +80,7 @@ class HapticServer : public godot::Object {
     void world_remove_body(int64_t world, int64_t body);
     godot::PackedStringArray world_start(int64_t world, bool realtime, double record_seconds);
     void world_stop(int64_t world);
+    godot::PackedFloat64Array world_get_last_force(int64_t world) const;
     bool world_is_running(int64_t world) const;
     godot::PackedStringArray world_submit(int64_t world, const godot::PackedInt64Array& bodies,
                                           const godot::PackedFloat64Array& states, double tick,

@@ -43,7 +43,10 @@ class HapticWorld {
     [[nodiscard]] std::int32_t left_out() const { return shown_.overflow; }
     /// Builds session and runner; starts the thread when `realtime`.
     void start(bool realtime, double record_seconds, Problems& problems);
+    /// Joins the thread, and leaves the device without force.
     void stop();
+    /// The force that a simulated device had been sent last when the world stopped (N, N, N m).
+    [[nodiscard]] const Wrench& last_force() const { return last_force_; }
     [[nodiscard]] bool running() const { return runner_ != nullptr; }
     [[nodiscard]] bool realtime() const { return realtime_; }
     int advance(double seconds);
@@ -104,6 +107,7 @@ class HapticWorld {
     bool realtime_{false};
     CouplingGains gains_;
     HapticReport report_;
+    Wrench last_force_{0.0, 0.0, 0.0};
     std::uint64_t sequence_{0};
     std::uint64_t ve_ticks_{0};
     // beliefs of the report whose impulses were handed out last, and of the one before

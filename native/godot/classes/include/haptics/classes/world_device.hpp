@@ -37,6 +37,9 @@ class WorldDevice {
     virtual void home(Problems& /*problems*/) {}
     /// What happened to it since the last call.
     virtual std::vector<std::string> take_messages() { return {}; }
+    /// Force that a simulated device was sent last (N, N, N m); a real one's own figures tell. Not while the
+    /// loop's thread runs.
+    [[nodiscard]] virtual Wrench last_force() const { return Wrench::Zero(); }
     /// Figures for the run's statistics.
     [[nodiscard]] virtual godot::Dictionary statistics() const { return {}; }
 };
