@@ -15,10 +15,10 @@ using namespace haptics;
 
 namespace {
 
-constexpr double k_step = 0.001;
+constexpr double k_free_step = 0.001;
 constexpr std::uint64_t k_number = 5;
 
-LinkageVector coordinates(std::initializer_list<double> values) {
+LinkageVector joints_at(std::initializer_list<double> values) {
     LinkageVector v(static_cast<Eigen::Index>(values.size()));
     std::copy(values.begin(), values.end(), v.data());
     return v;
@@ -53,10 +53,10 @@ struct Beside {
         take_neighborhood(*shared::empty_world(), *links);
     }
     void run(const HandInput& hand = {}) {
-        follow_linkage(*data, k_number, linkage, *links, k_step);
-        step(tool, *data, hand, k_step, out);
-        push_linkage(*data, k_number, *links, k_step);
-        step(linkage, *links, HandInput{}, k_step, links_out);
+        follow_linkage(*data, k_number, linkage, *links, k_free_step);
+        step(tool, *data, hand, k_free_step, out);
+        push_linkage(*data, k_number, *links, k_free_step);
+        step(linkage, *links, HandInput{}, k_free_step, links_out);
     }
     Model tool;
     Model linkage;
@@ -77,18 +77,18 @@ TEST_CASE("what the tool's step foresees of a link is what the linkage does") {
     for (int link = 0; link < 3; ++link) {
         CAPTURE(link);
         auto data = std::make_unique<Data>();
-        reset(model, *data, coordinates({0.4, 0.7, -0.3}));
+        reset(model, *data, joints_at({0.4, 0.7, -0.3}));
         take_neighborhood(*shared::empty_world(Vec2(0.0, -9.81)), *data);
         StepOutput out;
         for (int i = 0; i < 5; ++i)
-            step(model, *data, HandInput{}, k_step, out);
-        const LinkResponse r = link_response(model, *data, link, k_step);
+            step(model, *data, HandInput{}, k_free_step, out);
+        const LinkResponse r = link_response(model, *data, link, k_free_step);
         const Twist before = data->tool.body[static_cast<std::size_t>(link)].velocity;
         const Wrench push(0.8, -1.3, 0.01);
         push_link(*data, link, push);
-        step(model, *data, HandInput{}, k_step, out);
+        step(model, *data, HandInput{}, k_free_step, out);
         const Twist change = data->tool.body[static_cast<std::size_t>(link)].velocity - before;
-        const Twist foreseen = k_step * (r.mobility * push + r.acceleration);
+        const Twist foreseen = k_free_step * (r.mobility * push + r.acceleration);
         // J and the Coriolis terms change during the step
         CHECK((change - foreseen).norm() < 1e-2 * change.norm());
         CHECK(change.norm() > 1e-3);
@@ -103,7 +103,7 @@ TEST_CASE("a tool that hits a door leaves with what the angular momentum about t
             CAPTURE(at);
             surface.restitution = e;
             // the door lies along x; the tool comes from above, its lower edge 1 mm over the door
-            Beside both(shared::box_tool(0.3), Pose(at, 0.016, 0.0), shared::door(), coordinates({0.0}),
+            Beside both(shared::box_tool(0.3), Pose(at, 0.016, 0.0), shared::door(), joints_at({0.0}),
                         surface);
             // a narrow tool, so that the lever is known
             both.data->tool.piece[0].convex = make_disc(Vec2::Zero(), 0.01);
@@ -127,7 +127,7 @@ TEST_CASE(
     "a tool leaning on a door that leans on its stop gets its push back, at once and without a tremor") {
     LinkageSpec spec = shared::door();
     spec.links[0].joint.lower_limit = -0.05;
-    Beside both(shared::box_tool(0.3), Pose(0.15, 0.016, 0.0), spec, coordinates({0.0}),
+    Beside both(shared::box_tool(0.3), Pose(0.15, 0.016, 0.0), spec, joints_at({0.0}),
                 shared::paper_surface());
     both.data->tool.piece[0].convex = make_disc(Vec2::Zero(), 0.01);
     HandInput hand;
@@ -156,7 +156,7 @@ TEST_CASE("tool and floating linkage share the momentum that the hand gives") {
     Surface surface = shared::paper_surface();
     // pushed along its axis, through its center of mass
     Beside both(shared::box_tool(0.3), Pose(-0.0305, 0.0, 0.0), shared::chain(1, BaseKind::floating),
-                coordinates({0.05, 0.0, 0.0}), surface);
+                joints_at({0.05, 0.0, 0.0}), surface);
     both.data->tool.piece[0].convex = make_disc(Vec2::Zero(), 0.03);
     HandInput hand;
     hand.held = true;
@@ -164,7 +164,7 @@ TEST_CASE("tool and floating linkage share the momentum that the hand gives") {
     double given = 0.0;
     for (int i = 0; i < 400; ++i) {
         both.run(hand);
-        given += 0.5 * k_step;
+        given += 0.5 * k_free_step;
     }
     const double tool = both.data->velocity.x();
     const double link = both.links->linkage.velocity(0);
@@ -184,7 +184,7 @@ TEST_CASE("random pushes between a tool and an arm create no energy") {
         surface.restitution = random(0.0, 1.0);
         surface.static_friction = surface.dynamic_friction = random(0.0, 0.6);
         Beside both(shared::box_tool(random(0.02, 2.0)), Pose(random(0.02, 0.28), 0.12, random(-1.0, 1.0)),
-                    shared::chain(3), coordinates({0.0, random(-0.2, 0.2), random(-0.2, 0.2)}), surface);
+                    shared::chain(3), joints_at({0.0, random(-0.2, 0.2), random(-0.2, 0.2)}), surface);
         both.data->velocity = Twist(random(-0.3, 0.3), -1.0, random(-5.0, 5.0));
         const auto energy = [&both] {
             const ToolModel& t = both.tool.tool;

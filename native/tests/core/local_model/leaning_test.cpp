@@ -13,7 +13,7 @@ using namespace haptics;
 
 namespace {
 
-enum class Place { flat, corner, ledge, tip };
+enum class Spot { flat, corner, ledge, tip };
 
 struct Solid {
     std::uint64_t id;
@@ -28,16 +28,16 @@ Surface rough() {
 }
 
 // what there is to lean on, cut into pieces; some of it is too far to be touched
-std::vector<Solid> solids(Place place) {
+std::vector<Solid> solids(Spot place) {
     std::vector<Solid> out;
-    const double end = place == Place::ledge ? 0.004 : 0.1; // a ledge ends under the tool
+    const double end = place == Spot::ledge ? 0.004 : 0.1; // a ledge ends under the tool
     const int pieces = 9;
     for (int i = 0; i < pieces; ++i) {
         const double width = (end + 0.1) / pieces;
         out.push_back({static_cast<std::uint64_t>(100 + i),
                        make_box(Vec2(-0.1 + (i + 0.5) * width, -0.01), Vec2(width, 0.02))});
     }
-    if (place == Place::corner)
+    if (place == Spot::corner)
         for (int i = 0; i < 5; ++i)
             out.push_back({static_cast<std::uint64_t>(200 + i),
                            make_box(Vec2(0.03, 0.01 * i + 0.005), Vec2(0.02, 0.01))});
@@ -55,13 +55,13 @@ struct Outcome {
     int updates{0};
 };
 
-Outcome lean(Place place, BodyKind kind, unsigned seed) {
+Outcome lean(Spot place, BodyKind kind, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     const std::vector<Solid> solid = solids(place);
     Model model = shared::box_tool();
     auto data = std::make_unique<Data>();
-    const bool tip = place == Place::tip;
+    const bool tip = place == Spot::tip;
     reset(model, *data, Pose(0.0, tip ? 0.0216 : 0.0101, tip ? 0.6 : 0.0));
     auto n = std::make_unique<Neighborhood>();
     const auto publish = [&](double rate, double late) {
@@ -107,7 +107,7 @@ Outcome lean(Place place, BodyKind kind, unsigned seed) {
         }
         // pressed in first, then pushed aside, well below the static limit
         const double part = std::clamp((i - 500) / 1000.0, 0.0, 1.0);
-        hand.force = Wrench(place == Place::corner ? 1.5 * part : 0.6 * part, -2.0, 0.0);
+        hand.force = Wrench(place == Spot::corner ? 1.5 * part : 0.6 * part, -2.0, 0.0);
         step(model, *data, hand, 0.001, out);
         if (i < 2000) {
             settled = data->pose;
@@ -136,7 +136,7 @@ Outcome lean(Place place, BodyKind kind, unsigned seed) {
 
 TEST_CASE("60 s of leaning while snapshots come unevenly: no new collision, no slip, an unmoved anchor") {
     for (const BodyKind kind : {BodyKind::fixed, BodyKind::kinematic})
-        for (const Place place : {Place::flat, Place::corner, Place::ledge, Place::tip}) {
+        for (const Spot place : {Spot::flat, Spot::corner, Spot::ledge, Spot::tip}) {
             const Outcome o = lean(place, kind, 5U + static_cast<unsigned>(place));
             CAPTURE(static_cast<int>(place));
             CAPTURE(static_cast<int>(kind));
