@@ -1,23 +1,16 @@
 #!/usr/bin/env python3
 """plot_experiment2.py FREE.csv CONTACT.csv OUT.png: distance of handle and proxy, and the forces of contacts, against time."""
 
-import csv
 import sys
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from plot_experiment1 import read
 
 COLORS = {"wall_link_1_n": "#3b5bdb", "wall_link_2_n": "#e8590c", "object_link_3_n": "#2b8a3e"}
 NAMES = {"wall_link_1_n": "link 1, wall", "wall_link_2_n": "link 2, wall", "object_link_3_n": "link 3, object"}
-
-
-def read(path):
-    """The columns of a CSV by name, as lists of numbers."""
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = list(csv.reader(file))
-    return {name: [float(row[i]) for row in rows[1:]] for i, name in enumerate(rows[0])}
 
 
 def main(free_path, contact_path, out_path):

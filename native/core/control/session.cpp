@@ -244,9 +244,7 @@ void Session::book_own_work() {
     const Wrench force = share_ * grasp_ * output_.full_coupling;
     const double others = (1.0 - placement_.share()) * force.dot(now - last_target_);
     const double turned = placement_.share() * force.z() * settings_.step * placement_.turn().rate();
-    if (grasp_ > 0.0 && !parked_)
-        source_work_ += others;
-    source_work_ += turned;
+    source_work_ += others + turned;
     last_target_ = now;
 }
 

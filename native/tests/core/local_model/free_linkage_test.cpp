@@ -27,8 +27,9 @@ LinkageVector joints_at(std::initializer_list<double> values) {
 // a linkage that runs beside a tool, whose neighbors its links are
 struct Beside {
     Beside(const Model& tool_model, const Pose& start, const LinkageSpec& spec, const LinkageVector& at,
-           const Surface& surface)
-        : tool(tool_model)
+           const Surface& surface, double dt = k_free_step)
+        : step_time(dt)
+        , tool(tool_model)
         , linkage(shared::linkage_tool(spec))
         , data(std::make_unique<Data>())
         , links(std::make_unique<Data>()) {
@@ -53,11 +54,12 @@ struct Beside {
         take_neighborhood(*shared::empty_world(), *links);
     }
     void run(const HandInput& hand = {}) {
-        follow_linkage(*data, k_number, linkage, *links, k_free_step);
-        step(tool, *data, hand, k_free_step, out);
-        push_linkage(*data, k_number, *links, k_free_step);
-        step(linkage, *links, HandInput{}, k_free_step, links_out);
+        follow_linkage(*data, k_number, linkage, *links, step_time);
+        step(tool, *data, hand, step_time, out);
+        push_linkage(*data, k_number, *links, step_time);
+        step(linkage, *links, HandInput{}, step_time, links_out);
     }
+    double step_time;
     Model tool;
     Model linkage;
     std::unique_ptr<Data> data;
@@ -172,15 +174,25 @@ TEST_CASE("tool and floating linkage share the momentum that the hand gives") {
     CHECK(link == doctest::Approx(tool).epsilon(0.01));
 }
 
-TEST_CASE("random pushes between a tool and an arm create no energy beyond the 2 % that the arm's own steps "
-          "are off by") {
+namespace {
+
+struct MostEnergy {
+    double one_at_a_time{0.0};
+    double two_at_once{0.0};
+};
+
+// most of the start's energy that tool and arm have in 0.4 s after a random push, over 40 of them: where the
+// tool hits one link after the other, and where it hits twice in a step
+MostEnergy most_energy(double dt) {
     std::uint32_t seed = 11;
     const auto random = [&seed](double least, double most) {
         seed = seed * 1664525U + 1013904223U;
         return least + (most - least) * static_cast<double>(seed >> 8) / 16777216.0;
     };
-    double worst = 0.0;
+    MostEnergy seen;
     for (int run = 0; run < 40; ++run) {
+        double most = 0.0;
+        bool two_at_once = false;
         Surface surface = shared::paper_surface();
         surface.restitution = random(0.0, 1.0);
         surface.static_friction = surface.dynamic_friction = random(0.0, 0.6);
@@ -192,7 +204,7 @@ TEST_CASE("random pushes between a tool and an arm create no energy beyond the 2
         const double drift = random(-0.3, 0.3);
         const double spin = random(-5.0, 5.0);
         Beside both(shared::box_tool(mass), Pose(aside, 0.12, turned), shared::chain(3),
-                    joints_at({0.0, second, third}), surface);
+                    joints_at({0.0, second, third}), surface, dt);
         both.data->velocity = Twist(drift, -1.0, spin);
         const auto energy = [&both] {
             const ToolModel& t = both.tool.tool;
@@ -201,11 +213,27 @@ TEST_CASE("random pushes between a tool and an arm create no energy beyond the 2
                    kinetic_energy(both.linkage.tool.linkage, both.links->linkage);
         };
         const double start = energy();
-        for (int i = 0; i < 400; ++i) {
+        for (int i = 0; i < static_cast<int>(0.4 / dt); ++i) {
             both.run();
-            worst = std::max(worst, energy() / start);
+            two_at_once = two_at_once || both.out.colliding > 1;
+            most = std::max(most, energy() / start);
         }
+        double& worst = two_at_once ? seen.two_at_once : seen.one_at_a_time;
+        worst = std::max(worst, most);
     }
-    MESSAGE("most energy seen: " << worst << " of the start");
-    CHECK(worst < 1.02);
+    return seen;
+}
+
+} // namespace
+
+TEST_CASE("random pushes between a tool and an arm create no energy") {
+    for (const double dt : {1e-3, 5e-4, 2.5e-4}) {
+        CAPTURE(dt);
+        const MostEnergy seen = most_energy(dt);
+        CHECK(seen.one_at_a_time > 0.99);
+        CHECK(seen.one_at_a_time < 1.01);
+        // two links that are hit in one step do not foresee each other's answer (docs/linkages.md): 1.0113
+        // and 1.0144 seen
+        CHECK(seen.two_at_once < 1.015);
+    }
 }
