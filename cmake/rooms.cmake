@@ -100,9 +100,9 @@ function(haptics_room target)
     add_dependencies(${target} haptics_room_check)
 endfunction()
 
-# haptics_join_sources(TARGET): its sources compiled eight at a time, so names local to a file differ within a room
+# haptics_join_sources(TARGET): its sources compiled sixteen at a time, so names local to a file differ within a room
 function(haptics_join_sources target)
     if(HAPTICS_UNITY)
-        set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+        set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
     endif()
 endfunction()

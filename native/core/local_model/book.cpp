@@ -135,8 +135,7 @@ HandInput at_share(const HandInput& hand) {
     return used;
 }
 
-bool hold_back(const Data& data, const HandInput& hand, const Motion& motion, HandInput& used) {
-    const Wrench full = coupling_force(data, hand, motion);
+bool hold_back(const HandInput& hand, const Wrench& full, HandInput& used) {
     // part of the coupling that takes effect: the gate's share, less what the device cannot answer
     const double effective = std::min({hand.share, hand.max_force / std::max(full.head<2>().norm(), 1e-300),
                                        hand.max_torque / std::max(std::abs(full.z()), 1e-300)});

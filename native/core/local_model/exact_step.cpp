@@ -78,7 +78,8 @@ void run(const Model& model, Data& data, const HandInput& hand, ExactTask task, 
     task.budget = effort.products;
     solve_exactly(model, data, used, task, motion);
     effort.products -= motion.spent;
-    if (!hand.held || motion.done == 0.0 || !hold_back(data, hand, mean_motion(motion, task.left), used))
+    if (!hand.held || motion.done == 0.0 ||
+        !hold_back(hand, coupling_force(data, hand, mean_motion(motion, task.left)), used))
         return;
     start.restore(s);
     task.budget = effort.products;

@@ -130,7 +130,7 @@ void finish(const Model& model, Data& data, StepOutput& output) {
             add_event(output, ContactEventKind::ended, id, data.time, nullptr, 0.0);
     }
     output.stored_energy = stored_energy(model, data);
-    data.touched = touched;
+    std::copy_n(touched.begin(), touched_count, data.touched.begin());
     data.touched_count = touched_count;
 }
 

@@ -99,7 +99,7 @@ void integrate(const Model& model, Data& data, const HandInput& hand, double dt,
     bool settled = solve_step(model, data, used, dt, left, integrator);
     Motion motion = end_motion(s, dt, left);
     if (hand.held) {
-        if (hold_back(data, hand, motion, used)) {
+        if (hold_back(hand, coupling_force(data, hand, motion), used)) {
             s.velocity = start;
             settled = solve_step(model, data, used, dt, left, integrator) && settled;
             motion = end_motion(s, dt, left);

@@ -29,9 +29,9 @@ struct Motion {
 
 // The hand's input with the coupling at its share.
 HandInput at_share(const HandInput& hand);
-// A coupling beyond what the device can answer becomes a constant force of the size it can: true when it
-// does.
-bool hold_back(const Data& data, const HandInput& hand, const Motion& motion, HandInput& used);
+// A coupling whose force at full share is beyond what the device can answer becomes a constant force of the
+// size it can: true when it does.
+bool hold_back(const HandInput& hand, const Wrench& full, HandInput& used);
 // Coupling force on the tool.
 Wrench coupling_force(const Data& data, const HandInput& hand, const Motion& motion);
 // Adds the coupling to the output; returns what the springs of `used` gave.
@@ -44,6 +44,9 @@ void book(const Model& model, Data& data, const Wrench& hand_force, const Motion
 void tell_push(Data& data, const double* normal, const double* tangent);
 // Velocities into Data, poses on by `moved`, everything else by `dt`.
 void move_bodies(const Model& model, Data& data, const FreedomVector& moved, double dt);
+
+// A step of a rigid tool that touches nothing (free_rigid.cpp).
+void step_freely(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output);
 
 // A step or the rest of one with the exact integrator (exact_step.cpp), collisions included.
 void step_exactly(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output);

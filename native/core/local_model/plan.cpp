@@ -28,6 +28,7 @@ constexpr std::array<StageText, k_stage_count> k_text{{
     {Stage::collisions, "collision impulses", "nothing can collide, or contacts are penalty forces alone"},
     {Stage::restitution, "restitution", "no surface near bounces"},
     {Stage::friction, "friction", "no pair of surfaces has friction"},
+    {Stage::free_system, "matrices in steps without contact", "a rigid tool that touches nothing needs none"},
 }};
 
 // surfaces of the tool's links and of the neighbors: whether any pair gives `figure` > 0
@@ -91,6 +92,7 @@ Plan choose_plan(const Model& model, const Neighborhood& n) {
     need(Stage::joint_springs, articulated && any_joint(model, [](const JointSpec& j) {
                                    return j.spring_stiffness > 0.0 || j.damping > 0.0;
                                }));
+    need(Stage::free_system, articulated || model.settings.integrator == Integrator::exact);
     return plan;
 }
 

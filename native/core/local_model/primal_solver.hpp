@@ -8,6 +8,7 @@
 
 #include "contact_rules.hpp"
 #include "internal.hpp"
+#include "rigid_grip.hpp"
 #include "small_solve.hpp"
 
 namespace haptics::local {
@@ -119,6 +120,14 @@ class PrimalSolver {
             }
         if (!hand.held)
             return;
+        if constexpr (N == 3) {
+            if (!model_.tool.articulated) {
+                const Vec2 r(s_.grip(1, 2), -s_.grip(0, 2));
+                couple_rigid({r, data_.grip.pose}, grip_pose(data_.grip, data_.pose), hand, dt_, left, base_,
+                             right_);
+                return;
+            }
+        }
         const Pose target = hand.target - left * hand.target_velocity;
         const Vec3 distance = target - grip_pose(data_.grip, data_.pose);
         const Vec3 k = dt_ * (dt_ * hand.stiffness + hand.damping);

@@ -29,6 +29,7 @@
 #include <cmath>
 
 #include "internal.hpp"
+#include "rigid_grip.hpp"
 #include "row_solver.hpp"
 
 namespace haptics {
@@ -235,13 +236,8 @@ void need_inverse(const Model& model, Data& data) {
 Mat3 mobility(const Model& model, Data& data) {
     ContactSystem& s = data.system;
     if (!model.tool.articulated) {
-        const double mass = 1.0 / model.tool.mass;
-        const double turn = data.grip.pose ? 1.0 : 0.0;
-        const Vec3 lever(s.grip(0, 2), s.grip(1, 2), turn); // velocity of the grip for a turn
-        Mat3 rigid = (1.0 / model.tool.inertia) * lever * lever.transpose();
-        rigid(0, 0) += mass;
-        rigid(1, 1) += mass;
-        return rigid;
+        const RigidGrip grip{{s.grip(1, 2), -s.grip(0, 2)}, data.grip.pose};
+        return grip.mobility(model.tool.mass, model.tool.inertia);
     }
     Mat3 result;
     for (int i = 0; i < 3; ++i) {

@@ -67,7 +67,8 @@ class RowSolver {
             const double others = r_.mobility.row(i).tail(count_ - 3).dot(r_.force.tail(count_ - 3));
             right[i] = scale * (r_.push[i] - k * (r_.rate[i] + dt_ * others));
         }
-        r_.force.head<3>() = matrix.partialPivLu().solve(right);
+        solve_pivoted(matrix, right);
+        r_.force.head<3>() = right;
         apply();
     }
 

@@ -84,7 +84,7 @@ Mat3 grip_mobility(const Model& model, Data& data) {
 
 void step_direct(const Model& model, Data& data, const Pose& pose, const Twist& velocity, double dt,
                  StepOutput& output) {
-    output = StepOutput{};
+    output.clear();
     data.pose = pose;
     data.velocity = velocity;
     local::move_neighbors(data, dt);
@@ -98,14 +98,21 @@ void step_direct(const Model& model, Data& data, const Pose& pose, const Twist& 
 }
 
 void step(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output) {
-    output = StepOutput{};
+    output.clear();
     local::begin_tool_step(model, data);
     find_contacts(model, data, dt);
+    const bool exact = model.settings.integrator == Integrator::exact;
+    if (data.patches.count == 0 && !exact && !data.plan.runs(Stage::free_system)) {
+        local::step_freely(model, data, hand, dt, output);
+        local::finish(model, data, output);
+        ++data.step;
+        return;
+    }
     local::assemble(model, data, dt);
 
     output.grip_mobility = local::mobility(model, data);
 
-    if (model.settings.integrator == Integrator::exact)
+    if (exact)
         local::step_exactly(model, data, hand, dt, output);
     else
         advance(model, data, hand, dt, output);

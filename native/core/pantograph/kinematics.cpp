@@ -45,13 +45,13 @@ constexpr double k_absurd_misfit = 0.25;
 // save where an arm is so nearly straight that both are the same (rad)
 constexpr double k_mode_slack = 0.02;
 // no handle is that far away (m, rad)
-constexpr double k_absurd = 1.0e6;
+constexpr double k_far = 1.0e6;
 
 double wrap(double angle) {
     return std::remainder(angle, 2.0 * std::numbers::pi);
 }
 
-std::size_t index(int i) {
+std::size_t nth(int i) {
     return static_cast<std::size_t>(i);
 }
 
@@ -92,14 +92,14 @@ PantographKinematics::PantographKinematics(const PantographGeometry& geometry)
 PantographState PantographKinematics::locate(const Pose& pose) const {
     PantographState state;
     // a pose beyond all devices is as good as none, and its squares overflow
-    const bool finite = pose.allFinite() && pose.cwiseAbs().maxCoeff() < k_absurd;
+    const bool finite = pose.allFinite() && pose.cwiseAbs().maxCoeff() < k_far;
     const Pose used = finite ? pose : geometry_.home;
     const Transform handle(freedoms() == 3 ? used : Pose(used.x(), used.y(), 0.0));
     state.pose = used;
     state.closed = finite;
     state.reachable = finite;
     state.reach_margin = finite ? 1.0e9 : -1.0e9;
-    for (std::size_t b = 0; b < index(geometry_.bar_count); ++b) {
+    for (std::size_t b = 0; b < nth(geometry_.bar_count); ++b) {
         const FiveBarGeometry& bar = geometry_.bar[b];
         const Vec2 arm = handle.turn(geometry_.attachment[b]);
         const Vec2 end = handle.origin + arm;
@@ -145,7 +145,7 @@ bool PantographKinematics::inverse(const Pose& pose, JointVector& angles) const 
     const PantographState state = locate(pose);
     angles.setZero();
     for (int i = 0; i < motors(); ++i) {
-        const Vec2& e = state.leg[index(i)].proximal;
+        const Vec2& e = state.leg[nth(i)].proximal;
         angles[i] = std::atan2(e.y(), e.x());
     }
     return state.reachable;
@@ -161,7 +161,7 @@ PoseEstimate PantographKinematics::forward(const JointVector& angles) const {
     // circles, and the nearest point starts the least squares as well
     std::array<Vec2, 2> end{Vec2::Zero(), Vec2::Zero()};
     bool meets = true;
-    for (std::size_t b = 0; b < index(geometry_.bar_count); ++b) {
+    for (std::size_t b = 0; b < nth(geometry_.bar_count); ++b) {
         const FiveBarGeometry& bar = geometry_.bar[b];
         std::array<Vec2, 2> elbow;
         for (std::size_t k = 0; k < 2; ++k)
@@ -234,7 +234,7 @@ Pose PantographKinematics::refinement(const PantographState& state, const JointV
     // what the misfit adds through the curvature of the joint angles
     Mat3 curved = normal;
     for (int i = 0; i < motors(); ++i) {
-        const LegState& leg = state.leg[index(i)];
+        const LegState& leg = state.leg[nth(i)];
         const double moment = cross(leg.proximal, leg.distal);
         if (std::abs(moment) < k_least_moment)
             continue;
@@ -256,7 +256,7 @@ Pose PantographKinematics::refinement(const PantographState& state, const JointV
 JointVector PantographKinematics::misfit(const PantographState& state, const JointVector& angles) const {
     JointVector left = JointVector::Zero();
     for (int i = 0; i < motors(); ++i) {
-        const Vec2& e = state.leg[index(i)].proximal;
+        const Vec2& e = state.leg[nth(i)].proximal;
         left[i] = wrap(angles[i] - std::atan2(e.y(), e.x()));
     }
     return left;
@@ -323,12 +323,12 @@ WorkspaceReport PantographKinematics::workspace(const Pose& pose, const Pantogra
 }
 
 double PantographKinematics::angle_of_count(int i, double count) const {
-    return geometry_.encoder_offset[index(i)] + geometry_.encoder_direction[index(i)] * count * 2.0 *
-                                                    std::numbers::pi / geometry_.motor.counts_per_revolution;
+    return geometry_.encoder_offset[nth(i)] + geometry_.encoder_direction[nth(i)] * count * 2.0 *
+                                                  std::numbers::pi / geometry_.motor.counts_per_revolution;
 }
 
 double PantographKinematics::count_of_angle(int i, double angle) const {
-    return geometry_.encoder_direction[index(i)] * (angle - geometry_.encoder_offset[index(i)]) *
+    return geometry_.encoder_direction[nth(i)] * (angle - geometry_.encoder_offset[nth(i)]) *
            geometry_.motor.counts_per_revolution / (2.0 * std::numbers::pi);
 }
 

@@ -12,7 +12,7 @@ using namespace haptics::testing;
 
 namespace {
 
-std::vector<Convex> tools() {
+std::vector<Convex> thin_wall_tools() {
     return {make_box(Vec2{0, 0}, Vec2{0.005, 0.005}),
             make_box(Vec2{0, 0}, Vec2{0.02, 0.02}),
             make_box(Vec2{0, 0}, Vec2{0.02, 0.02}, 0.002),
@@ -22,7 +22,7 @@ std::vector<Convex> tools() {
             make_convex(std::array{Vec2{0, -0.01}, Vec2{0.003, 0.01}, Vec2{-0.003, 0.01}})};
 }
 
-double lowest(const Convex& tool, double theta) {
+double lowest_corner(const Convex& tool, double theta) {
     double low = 1.0;
     for (int i = 0; i < tool.count; ++i)
         low = std::min(low, rotate(theta, tool.vertex[static_cast<std::size_t>(i)]).y());
@@ -58,7 +58,7 @@ TEST_CASE(
     std::mt19937_64 random(8);
     for (int kind = 0; kind < 5; ++kind) {
         const auto set = thin_wall(kind);
-        for (const Convex& shape : tools()) {
+        for (const Convex& shape : thin_wall_tools()) {
             for (int run = 0; run < 6; ++run) {
                 CAPTURE(kind);
                 CAPTURE(shape.count);
@@ -78,7 +78,7 @@ TEST_CASE(
                         x += x > 0.0 ? -2e-4 : 2e-4;
                     if (i > 300)
                         theta += 2e-4;
-                    tool->body[0].pose = Pose{x, -depth - lowest(shape, theta), theta};
+                    tool->body[0].pose = Pose{x, -depth - lowest_corner(shape, theta), theta};
                     detect_patches(*tool, *set, {}, patches, patches);
                     REQUIRE(patches.count == 1);
                     const Patch& patch = patches.patch[0];

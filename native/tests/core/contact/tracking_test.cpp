@@ -19,7 +19,7 @@ namespace {
 
 using Random = std::mt19937_64;
 
-double uniform(Random& random, double low, double high) {
+double uniform_draw(Random& random, double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
 }
 
@@ -63,10 +63,12 @@ std::unique_ptr<BodySet> random_tool(Random& random) {
         shape = make_disc(Vec2{0, 0}, 0.01);
     Body& body = add_body(
         *tool, 0, BodyKind::tool,
-        Pose{uniform(random, -0.1, 0.1), uniform(random, -0.05, 0.05), uniform(random, -3, 3)}, {shape});
+        Pose{uniform_draw(random, -0.1, 0.1), uniform_draw(random, -0.05, 0.05), uniform_draw(random, -3, 3)},
+        {shape});
     if (random() % 3 == 0)
         body.pose.z() = 0.0;
-    body.velocity = Twist{uniform(random, -2, 2), uniform(random, -2, 2), uniform(random, -10, 10)};
+    body.velocity =
+        Twist{uniform_draw(random, -2, 2), uniform_draw(random, -2, 2), uniform_draw(random, -10, 10)};
     return tool;
 }
 
@@ -215,11 +217,12 @@ TEST_CASE(
         add_body(*tool, 0, BodyKind::tool, Pose{0, 0, 0},
                  {run % 2 == 0 ? make_box(Vec2{0, 0}, Vec2{0.03, 0.02}) : make_disc(Vec2{0, 0}, 0.01)});
         PatchList patches;
-        Pose pose{uniform(random, -0.06, 0.06), uniform(random, -0.02, 0.02), 0};
+        Pose pose{uniform_draw(random, -0.06, 0.06), uniform_draw(random, -0.02, 0.02), 0};
         Twist twist{0, 0, 0};
         for (int i = 0; i < 3000; ++i) {
             if (i % 100 == 0)
-                twist = Twist{uniform(random, -0.5, 0.5), uniform(random, -0.5, 0.5), uniform(random, -5, 5)};
+                twist = Twist{uniform_draw(random, -0.5, 0.5), uniform_draw(random, -0.5, 0.5),
+                              uniform_draw(random, -5, 5)};
             Body& body = tool->body[0];
             body.pose = pose;
             body.velocity = twist;

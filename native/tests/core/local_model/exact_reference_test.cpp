@@ -19,7 +19,7 @@ namespace {
 
 constexpr double k_radius = 0.01;
 
-struct Pair {
+struct BesideReference {
     Model model;
     std::unique_ptr<Data> data{std::make_unique<Data>()};
     HandInput hand;
@@ -27,8 +27,8 @@ struct Pair {
 };
 
 template <typename Random>
-Pair draw(Random& random, double hardest) {
-    Pair p;
+BesideReference draw(Random& random, double hardest) {
+    BesideReference p;
     const auto between = [&](double low, double high) { return random.uniform(low, high); };
     const auto decade = [&](double low, double high) {
         return std::pow(10.0, random.uniform(std::log10(low), std::log10(high)));
@@ -95,7 +95,7 @@ TEST_CASE("exact: a disc among walls moves as in tiny steps of Runge and Kutta, 
     int events = 0;
     int compared = 0;
     for (int draw_index = 0; draw_index < 200; ++draw_index) {
-        Pair p = draw(random, 1e6);
+        BesideReference p = draw(random, 1e6);
         const double h = draw_index % 2 == 0 ? 0.001 : 0.002;
         CAPTURE(draw_index);
         // the fastest that a wall's spring can move the disc, normal and friction springs together

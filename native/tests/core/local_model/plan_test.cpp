@@ -146,7 +146,7 @@ TEST_SUITE("plan") {
         for (const char* stage :
              {"contact detection", "moving walls", "movable neighbors", "collision impulses", "restitution",
               "friction", "gravity", "linkage kinematics", "Coriolis terms", "joint limits", "joint friction",
-              "joint springs and dampers"})
+              "joint springs and dampers", "matrices in steps without contact"})
             CHECK(left_out(nothing, stage));
         CHECK(left_out(plan_of("smooth floor"), "friction"));
         CHECK_FALSE(left_out(plan_of("smooth floor"), "contact detection"));
@@ -156,6 +156,8 @@ TEST_SUITE("plan") {
         CHECK_FALSE(left_out(plan_of("moving floor"), "moving walls"));
         CHECK_FALSE(left_out(plan_of("an object on a floor"), "movable neighbors"));
         CHECK_FALSE(left_out(plan_of("an object on a floor"), "gravity"));
+        CHECK(left_out(plan_of("rough floor"), "matrices in steps without contact"));
+        CHECK_FALSE(left_out(plan_of("arm"), "matrices in steps without contact"));
         CHECK_FALSE(left_out(plan_of("arm"), "linkage kinematics"));
         CHECK(left_out(plan_of("arm"), "joint limits"));
         CHECK_FALSE(left_out(plan_of("chain with joints under gravity"), "joint limits"));

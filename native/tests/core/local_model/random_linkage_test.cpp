@@ -13,7 +13,7 @@ using shared::linkage_tool;
 
 namespace {
 
-struct Scene {
+struct LinkageScene {
     Model model;
     std::unique_ptr<Data> data;
     /// Stiffness of the softest wall, N/m.
@@ -31,7 +31,7 @@ Surface random_surface(shared::Random& random) {
 }
 
 // a linkage with random joints, limits, friction, damping and springs, at rest or in motion
-Scene random_scene(shared::Random& random, bool with_gravity) {
+LinkageScene random_scene(shared::Random& random, bool with_gravity) {
     shared::RandomLinkage kind;
     kind.links = random.integer(1, 14);
     kind.base = random.integer(0, 1) == 0 ? BaseKind::grounded : BaseKind::floating;
@@ -48,7 +48,7 @@ Scene random_scene(shared::Random& random, bool with_gravity) {
     }
     if (spec.base == BaseKind::grounded && spec.links[0].joint.kind == JointKind::fixed)
         spec.links[0].joint.kind = JointKind::revolute;
-    Scene scene;
+    LinkageScene scene;
     scene.model = linkage_tool(spec, random.uniform(0.004, 0.02));
     scene.model.settings.integrator =
         random.integer(0, 1) == 0 ? Integrator::linearly_implicit : Integrator::semi_implicit;
@@ -103,7 +103,7 @@ TEST_SUITE("random linkages") {
         int contacts = 0;
         int collisions = 0;
         for (int trial = 0; trial < 200; ++trial) {
-            Scene scene = random_scene(random, false);
+            LinkageScene scene = random_scene(random, false);
             StepOutput out;
             step(scene.model, *scene.data, HandInput{}, 5e-4, out);
             const double before = out.stored_energy;
@@ -132,7 +132,7 @@ TEST_SUITE("random linkages") {
     TEST_CASE("held and pulled about under gravity: finite, and never faster than the pull can make it") {
         shared::Random random(78);
         for (int trial = 0; trial < 100; ++trial) {
-            Scene scene = random_scene(random, true);
+            LinkageScene scene = random_scene(random, true);
             // walls up to 1e7 N/m at 1 ms are beyond the semi-implicit integrator
             scene.model.settings.integrator = Integrator::linearly_implicit;
             HandInput hand;
@@ -172,7 +172,7 @@ TEST_SUITE("random linkages") {
             shared::Random random(79);
             hash = 0xcbf29ce484222325ULL;
             for (int trial = 0; trial < 20; ++trial) {
-                Scene scene = random_scene(random, true);
+                LinkageScene scene = random_scene(random, true);
                 StepOutput out;
                 for (int i = 0; i < 300; ++i)
                     step(scene.model, *scene.data, HandInput{}, 1e-3, out);

@@ -4,6 +4,7 @@
 
 #include <haptics/core/pantograph/inertia.hpp>
 #include <haptics/core/pantograph/torque_map.hpp>
+#include <haptics/shared/dense_algebra.hpp>
 
 #include <doctest/doctest.h>
 
@@ -55,7 +56,7 @@ double least_cost(const JointJacobian& rates, const Wrench& wrench, const Eigen:
                 map.col(c++) = column;
         }
         if (free_count > 0) {
-            const Eigen::VectorXd found = map.completeOrthogonalDecomposition().solve(left);
+            const Eigen::VectorXd found = shared::least_squares(map, left);
             left -= map * found;
             for (int i = 0, c = 0; i < 4; ++i)
                 if (at[static_cast<std::size_t>(i)] == 0)
@@ -86,7 +87,7 @@ double largest_share(const JointJacobian& rates, const Wrench& wrench, const Eig
                     system.col(2) = -wrench;
                     const Vec3 known = -(rates.row(i).transpose() * (sign_i * limits[i]) +
                                          rates.row(j).transpose() * (sign_j * limits[j]));
-                    const Vec3 found = system.fullPivLu().solve(known);
+                    const Vec3 found = shared::least_squares(system, known);
                     if ((system * found - known).norm() < 1.0e-9 * (1.0 + known.norm()) &&
                         std::abs(found[0]) <= 1.0 + 1.0e-9 && std::abs(found[1]) <= 1.0 + 1.0e-9)
                         best = std::max(best, found[2]);
@@ -175,7 +176,7 @@ TEST_SUITE("random pantographs") {
                 REQUIRE(u.squaredNorm() == doctest::Approx(cost).epsilon(1.0e-7));
                 // the plain least-norm torques are out of bounds: scaling them would have lost force
                 const Eigen::MatrixXd map = (limits.asDiagonal() * state.rates).transpose();
-                const Eigen::Vector4d plain = map.completeOrthogonalDecomposition().solve(wrench);
+                const Eigen::Vector4d plain = shared::least_squares(map, wrench);
                 ++(plain.cwiseAbs().maxCoeff() > 1.0 + 1.0e-6 ? rescued : inside);
             }
         }

@@ -12,10 +12,10 @@ using namespace haptics;
 namespace {
 
 constexpr double k_sample = 1.0e-3;
-constexpr double k_step = 25.0e-6;
+constexpr double k_quantum = 25.0e-6;
 
 double quantized(double x) {
-    return std::round(x / k_step) * k_step;
+    return std::round(x / k_quantum) * k_quantum;
 }
 
 struct Errors {
@@ -26,7 +26,7 @@ struct Errors {
 // RMS errors of the estimator and of a plain difference on a quantized motion
 template <typename Motion, typename Speed>
 Errors compare(Motion motion, Speed speed) {
-    VelocityEstimator estimator(Vec3::Constant(0.5 * k_step));
+    VelocityEstimator estimator(Vec3::Constant(0.5 * k_quantum));
     double sum = 0.0;
     double plain = 0.0;
     double last = quantized(motion(0.0));
@@ -49,7 +49,7 @@ Errors compare(Motion motion, Speed speed) {
 TEST_SUITE("velocity estimator") {
     TEST_CASE("constant speed comes out within twice the reading error over the window") {
         for (const double speed : {0.0005, 0.003, 0.02, 0.3}) {
-            VelocityEstimator estimator(Vec3::Constant(0.5 * k_step), 20);
+            VelocityEstimator estimator(Vec3::Constant(0.5 * k_quantum), 20);
             double worst = 0.0;
             for (int k = 0; k < 3000; ++k) {
                 const double v =
@@ -58,7 +58,7 @@ TEST_SUITE("velocity estimator") {
                     worst = std::max(worst, std::abs(v - speed));
             }
             CHECK(estimator.window()[0] == 20);
-            CHECK(worst <= k_step / (20 * k_sample) * 1.0001);
+            CHECK(worst <= k_quantum / (20 * k_sample) * 1.0001);
         }
     }
 
@@ -74,7 +74,7 @@ TEST_SUITE("velocity estimator") {
     }
 
     TEST_CASE("a sudden stop is seen within the error, with no long tail") {
-        VelocityEstimator estimator(Vec3::Constant(0.5 * k_step));
+        VelocityEstimator estimator(Vec3::Constant(0.5 * k_quantum));
         for (int k = 0; k <= 100; ++k)
             estimator.update(Pose(0.3 * k * k_sample, 0.0, 0.0), k_sample);
         Twist v = Twist::Zero();

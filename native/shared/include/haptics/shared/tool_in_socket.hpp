@@ -25,8 +25,8 @@ inline void step(ToolInSocket& socket) {
     haptics::step(socket.model, *socket.data, socket.hand, socket.time_step, socket.output);
 }
 
-/// `contacts` from 0 to k_max_patches, with friction 0.6 and 0.5. With 0 the tool is free, a wall is 0.5 m
-/// away. `held`: a hand holds it in the middle by 1000 N/m.
+/// `contacts` from 0 to k_max_patches, with friction 0.6 and 0.5. With 0 the tool is free and nothing is
+/// near. The plan is that of the scene. `held`: a hand holds it in the middle by 1000 N/m.
 inline ToolInSocket tool_in_socket(int contacts, Integrator integrator, bool held = false) {
     constexpr double k_ring = 0.06;
     constexpr double k_disc = 0.001;
@@ -51,11 +51,8 @@ inline ToolInSocket tool_in_socket(int contacts, Integrator integrator, bool hel
         add_piece(neighborhood->bodies,
                   make_box(Vec2(k_ring + k_disc - k_overlap + 0.5 * depth, 0.0), Vec2(depth, 0.002)));
     }
-    if (contacts == 0) {
+    if (contacts == 0)
         add_piece(socket.model.tool.shape, make_disc(Vec2::Zero(), k_disc));
-        add_body(neighborhood->bodies, 100, BodyKind::fixed, surface, Pose(0.5, 0.0, 0.0));
-        add_piece(neighborhood->bodies, make_box(Vec2::Zero(), Vec2(0.02, 0.02)));
-    }
     if (held) {
         socket.hand.held = true;
         socket.hand.stiffness = Vec3(1000.0, 1000.0, 1.0);
@@ -63,6 +60,7 @@ inline ToolInSocket tool_in_socket(int contacts, Integrator integrator, bool hel
     }
     socket.data = std::make_unique<Data>();
     reset(socket.model, *socket.data, Pose::Zero());
+    neighborhood->plan = choose_plan(socket.model, *neighborhood);
     take_neighborhood(*neighborhood, *socket.data);
     // until the first touch, which may count as a collision, is over
     for (int i = 0; i < 200; ++i)

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 
 namespace haptics {
 
@@ -51,7 +52,8 @@ struct ContactEvent {
     double impulse{0.0};
 };
 
-struct StepOutput {
+/// What a step did, in figures.
+struct StepFigures {
     /// Coupling force on the proxy at the grip, mean of the step.
     Wrench coupling{0.0, 0.0, 0.0};
     /// The same at full share: the device is commanded its opposite, and the gate takes its own part.
@@ -86,16 +88,25 @@ struct StepOutput {
     double source_work{0.0};
     /// Net normal impulse of collisions along all patches, N s (sizes added).
     double impulse_size{0.0};
-    /// Events of the step in the order of their patches.
-    static constexpr int k_max_events = 16;
-    int event_count{0};
-    std::array<ContactEvent, k_max_events> event;
     int events_dropped{0};
     /// Contact integrator or collision solver reached its bound and used the fallback.
     bool fell_back{false};
     /// The exact integrator did not apply to the whole step, and the linearly implicit one did the rest
     /// (`fell_back` is set too).
     bool exact_gave_way{false};
+};
+
+struct StepOutput : StepFigures {
+    static constexpr int k_max_events = 16;
+    /// Events of the step in the order of their patches: the first `event_count` are set.
+    int event_count{0};
+    std::array<ContactEvent, k_max_events> event;
+
+    /// As new, but for the events beyond `event_count`, which mean nothing.
+    void clear() {
+        std::construct_at(static_cast<StepFigures*>(this)); // in place: a copy of a new one takes longer
+        event_count = 0;
+    }
 };
 
 /// Puts the proxy somewhere at rest and forgets all contacts. `configuration`: the pose of a rigid tool's

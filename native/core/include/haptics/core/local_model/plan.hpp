@@ -28,8 +28,9 @@ enum class Stage : std::uint8_t {
     joint_limits,   ///< limit rows
     joint_friction, ///< friction rows of joints
     joint_springs,  ///< springs and dampers of joints
+    free_system,    ///< mass matrix, rows and solver in a step without contacts
 };
-inline constexpr int k_stage_count = 12;
+inline constexpr int k_stage_count = 13;
 
 /// Set of stages. Plain bits: it crosses threads by copying.
 struct Plan {
