@@ -1,26 +1,28 @@
 #!/usr/bin/env bash
 # Runs the Godot suites of tests/ headless and prints, as last line, "N passed, N failed" (", N skipped" may follow).
-#   run.sh [--gut] [--filter=TEXT] [--junit=FILE] [--timeout=SECONDS]
+#   run.sh [--gut] [--filter=TEXT] [--junit=FILE] [--timeout=SECONDS] [--imported]
 #     --gut       through GUT itself, which has to be in addons/gut; else through the small runner in this folder
 #     --filter    only tests whose full name, like tests/unit/test_x.gd:TestInner:test_name, contains TEXT
 #     --junit     also writes the results as JUnit XML
 #     --timeout   for each of the two processes (default 300): tests/unit and tests/integration run as a game,
 #                 tests/editor inside of the editor
+#     --imported  the same project was imported by a run before, and no class with a name is new
 # It fails when a test failed or asserted nothing, when no test ran, when a suite does not parse or has no test, and
 # when the engine reported an error that no test expected. Logs and results stay in build/test_reports/.
 set -uo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
 root=$(cd "$here/../.." && pwd -P)
 
-kind=ours filter='' junit='' limit=300 tests=''
+kind=ours filter='' junit='' limit=300 tests='' imported=no
 for argument in "$@"; do
     case $argument in
         --gut) kind=gut ;;
         --filter=*) filter=${argument#*=} ;;
         --junit=*) junit=$(realpath -m "${argument#*=}") ;;
         --timeout=*) limit=${argument#*=} ;;
+        --imported) imported=yes ;;
         --tests=*) tests=$(realpath "${argument#*=}") || exit 2 ;; # another folder, for the runner's own tests
-        *) echo "run.sh: unknown argument '$argument'; known: --gut --filter= --junit= --timeout=" >&2 && exit 2 ;;
+        *) echo "run.sh: unknown argument '$argument'; known: --gut --filter= --junit= --timeout= --imported" >&2 && exit 2 ;;
     esac
 done
 
@@ -70,7 +72,7 @@ has_suites() {
 
 dirs=()
 for folder in unit integration; do [[ -d $project/tests/$folder ]] && dirs+=("res://tests/$folder"); done
-part import --import
+if [[ $imported == no ]]; then part import --import; fi
 if has_suites "${dirs[@]}"; then
     GUT_RUNNER_DIRS=$(IFS=, && echo "${dirs[*]}")
     export GUT_RUNNER_DIRS

@@ -24,7 +24,7 @@ run_case() (
     tests=$root/build/self_test/$1
     rm -rf "$tests" && mkdir -p "$root/build/self_test" && cp -r "$here/self_test/$1" "$tests" && rm "$tests/expect.sh"
     find "$tests" -name '*.gd.txt' | while IFS= read -r file; do mv "$file" "${file%.txt}"; done
-    output=$("$here/run.sh" "--tests=$tests" "${arguments[@]}" 2>&1)
+    output=$("$here/run.sh" "--tests=$tests" "${arguments[@]}" "${imported[@]}" 2>&1)
     code=$?
     [[ $code == "$exit_code" ]] || echo "exit code $code, expected $exit_code"
     tail -n 1 <<<"$output" | grep -qE -- "$last" || echo "last line '$(tail -n 1 <<<"$output")', expected $last"
@@ -34,9 +34,10 @@ run_case() (
     printf '%s\n' "$output" >"$tests.$kind.log"
 )
 
-passed=0 failed=0
+passed=0 failed=0 imported=()
 for name in "${cases[@]}"; do
     complaints=$(run_case "$name")
+    imported=(--imported) # the runner's classes are known now, and no case names one of its own
     if [[ $complaints == skipped ]]; then
         echo "skipped $name: not the same through GUT"
     elif [[ -z $complaints ]]; then
