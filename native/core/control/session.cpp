@@ -278,7 +278,7 @@ Mat3 Session::loop_mobility() const {
 }
 
 double Session::stored_energy() const {
-    const double force = gate_.limits().max_force * settings_.mapping.scale;
+    const double force = gate_.limits().max_force / settings_.mapping.scale;
     const Vec3 stretch = target() - grip_pose(data_->grip, data_->pose);
     // what moves the hidden part of the device's inertia comes from the controller, and back to it
     return output_.stored_energy - 0.5 * grasp_ * handle_velocity_.dot(hidden_mass_ * handle_velocity_) +
@@ -442,7 +442,7 @@ void Session::run_model() {
         }
     }
     place_target(hand);
-    hand.max_force = gate_.limits().max_force * settings_.mapping.scale;
+    hand.max_force = gate_.limits().max_force / settings_.mapping.scale;
     hand.max_torque = gate_.limits().max_torque;
     hand.share = share_ * grasp_;
     felt_mass_ = settings_.hand_force == HandForce::paper ? truncated_mass(mobility_, device_mass_)
@@ -583,7 +583,7 @@ void Session::write_report(const GateOutput& gate, const Wrench& command) {
             c.penetration = std::max(c.penetration, -point.gap);
         }
     }
-    r.run.max_force = std::max(r.run.max_force, r.force.head<2>().norm());
+    r.run.max_force = std::max(r.run.max_force, gate.applied.head<2>().norm());
     r.run.max_penetration = std::max(r.run.max_penetration, r.max_penetration);
     r.run.collisions += static_cast<std::uint64_t>(r.colliding);
     if (held_ && gate_.armed()) {

@@ -22,10 +22,15 @@
 // k_max_iterations, projected Gauss-Seidel with a fixed number of sweeps over the same equations gives the
 // answer and the step reports that it fell back. primal_solver.hpp forms the matrix above (few freedoms, or
 // many rows); row_solver.cpp works with as many unknowns as there are rows, in O(n) for each (long linkages).
+//
+// Hits that the velocities at the start do not foresee. A sub-step t of a longer one h ends with the velocity
+// v + a t and moves by t (v + a t), a = (v+ - v) / h, so a gap g with the rate r at the start and r+ at the
+// end of h closes where g + r t + a t^2 = 0, a = (r+ - r) / h: t = 2 g / (sqrt(r^2 - 4 a g) - r).
 
 #include <algorithm>
 #include <cmath>
 
+#include "contact_rules.hpp"
 #include "dense_solver.hpp"
 #include "internal.hpp"
 #include "primal_solver.hpp"
@@ -87,27 +92,93 @@ Motion end_motion(const ContactSystem& s, double dt, double left) {
     return {dt, left, s.velocity, dt * s.velocity};
 }
 
-} // namespace
+// Points that are apart and may collide, without their springs: those would slow a hit down within the
+// sub-step that ends with it.
+class AwaitedHits {
+  public:
+    explicit AwaitedHits(ContactSystem& s)
+        : s_(s) {
+        for (int i = 0; i < s.points; ++i) {
+            PointRow& p = s.point[static_cast<std::size_t>(i)];
+            if (p.gap <= 0.0 || !may_collide(s, p))
+                continue;
+            index_[static_cast<std::size_t>(count_)] = i;
+            stiffness_[static_cast<std::size_t>(count_++)] = p.stiffness;
+            p.stiffness = 0.0;
+        }
+    }
+    void restore() {
+        for (int k = 0; k < count_; ++k)
+            point(k).stiffness = stiffness_[static_cast<std::size_t>(k)];
+        count_ = 0;
+    }
+    // when the first of them closes fast within the solved sub-step, s; dt when none does
+    [[nodiscard]] double first(const Model& model, const FreedomVector& start, double dt) {
+        double earliest = dt;
+        for (int k = 0; k < count_; ++k) {
+            const int i = index_[static_cast<std::size_t>(k)];
+            const PointRow& p = point(k);
+            const double rate = row_rate(s_, i);
+            if (p.gap + dt * rate > 0.0)
+                continue;
+            const double before = s_.normal_rows.row(i).dot(start) - p.drive;
+            const double gain = (rate - before) / dt;
+            const double root = std::sqrt(std::max(0.0, before * before - 4.0 * gain * p.gap));
+            const double time = 2.0 * p.gap / (root - before);
+            if (-(before + gain * time) > model.settings.collision_speed)
+                earliest = std::min(earliest, time);
+        }
+        return earliest;
+    }
+    // one of them, too slow to hit, is met by its spring
+    [[nodiscard]] bool any_meets(double dt) {
+        for (int k = 0; k < count_; ++k)
+            if (point(k).gap + dt * row_rate(s_, index_[static_cast<std::size_t>(k)]) <= 0.0)
+                return true;
+        return false;
+    }
 
-void integrate(const Model& model, Data& data, const HandInput& hand, double dt, double left, double share,
-               StepOutput& output) {
+  private:
+    PointRow& point(int k) { return s_.point[static_cast<std::size_t>(index_[static_cast<std::size_t>(k)])]; }
+
+    ContactSystem& s_;
+    int count_{0};
+    std::array<int, k_max_points> index_;
+    std::array<double, k_max_points> stiffness_;
+};
+
+// The motion of a sub-step as far as it is known before it is booked.
+struct Solved {
+    HandInput used;
+    Motion motion;
+    bool settled;
+};
+
+Solved solve(const Model& model, Data& data, const HandInput& hand, double dt, double left) {
     ContactSystem& s = data.system;
-    load_velocities(model, data);
-    HandInput used = at_share(hand);
     const Integrator integrator = model.settings.integrator;
     const FreedomVector start = s.velocity;
+    HandInput used = at_share(hand);
     bool settled = solve_step(model, data, used, dt, left, integrator);
     Motion motion = end_motion(s, dt, left);
+    if (hand.held && hold_back(hand, coupling_force(data, hand, motion), used)) {
+        s.velocity = start;
+        settled = solve_step(model, data, used, dt, left, integrator) && settled;
+        motion = end_motion(s, dt, left);
+    }
+    return {used, motion, settled};
+}
+
+void move_on(const Model& model, Data& data, const HandInput& hand, const Solved& solved, double dt,
+             double share, StepOutput& output) {
+    ContactSystem& s = data.system;
+    const Motion& motion = solved.motion;
     if (hand.held) {
-        if (hold_back(hand, coupling_force(data, hand, motion), used)) {
-            s.velocity = start;
-            settled = solve_step(model, data, used, dt, left, integrator) && settled;
-            motion = end_motion(s, dt, left);
-        }
-        const Wrench applied = book_coupling(data, hand, used, motion, share, output) + used.force;
+        const Wrench applied =
+            book_coupling(data, hand, solved.used, motion, share, output) + solved.used.force;
         s.force_work += dt * applied.dot(s.grip * s.velocity.head(s.tool_freedoms));
     }
-    output.fell_back = output.fell_back || !settled;
+    output.fell_back = output.fell_back || !solved.settled;
     book(model, data, hand.held ? hand.force : Wrench(Wrench::Zero()), motion, share, output);
     const int n = s.tool_freedoms;
     s.force_work += dt * (s.tool_force - s.external.head(n) + s.tool_weight).dot(s.velocity.head(n));
@@ -115,6 +186,34 @@ void integrate(const Model& model, Data& data, const HandInput& hand, double dt,
     for (int i = 0; i < s.points; ++i)
         s.point[static_cast<std::size_t>(i)].gap += dt * row_rate(s, i);
     move_bodies(model, data, motion.stretch, dt);
+}
+
+} // namespace
+
+void integrate(const Model& model, Data& data, const HandInput& hand, double dt, double left, double share,
+               StepOutput& output) {
+    load_velocities(model, data);
+    move_on(model, data, hand, solve(model, data, hand, dt, left), dt, share, output);
+}
+
+double integrate_to_hit(const Model& model, Data& data, const HandInput& hand, double dt, double left,
+                        double step, StepOutput& output) {
+    ContactSystem& s = data.system;
+    load_velocities(model, data);
+    const FreedomVector start = s.velocity;
+    AwaitedHits awaited(s);
+    Solved solved = solve(model, data, hand, dt, left);
+    const double time = awaited.first(model, start, dt);
+    const bool meets = time >= dt && awaited.any_meets(dt);
+    if (time < dt || meets) {
+        s.velocity = start;
+        if (meets)
+            awaited.restore();
+        solved = solve(model, data, hand, time, left + dt - time);
+    }
+    awaited.restore();
+    move_on(model, data, hand, solved, time, time / step, output);
+    return time;
 }
 
 void explicit_forces(const Model& model, Data& data, double dt, StepOutput& output) {

@@ -14,6 +14,10 @@ void assemble(const Model& model, Data& data, double dt);
 // weight `share` = dt / haptic step.
 void integrate(const Model& model, Data& data, const HandInput& hand, double dt, double left, double share,
                StepOutput& output);
+// The same up to where a point that may collide closes fast, and at most `dt`, which is part of a step of
+// `step` seconds; says how far it came, s.
+double integrate_to_hit(const Model& model, Data& data, const HandInput& hand, double dt, double left,
+                        double step, StepOutput& output);
 
 // How the system moved in a sub-step, as its springs and dampers saw it (book.cpp).
 struct Motion {

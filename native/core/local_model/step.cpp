@@ -4,8 +4,10 @@
 // Sampled collision detection leaves up to h |v| of overlap, whose spring energy K (h v)^2 / 2 can be most of
 // the impact energy at stiff walls. So the step is cut at the time of impact: points that are apart close at
 // t = gap / |gap rate|; the model is integrated up to t, the impulses are applied with the gap at zero, and
-// the rest of the step follows. At most `max_events` cuts are made; what would close later is met by the
-// contact spring and, if it is still closing then, resolved at the start of the next step.
+// the rest of the step follows. The time is foreseen with the velocities at the start; what closes only
+// because forces speed it up on the way is found after the motion is known, and the motion is done again up
+// to there (integrate.cpp). At most `max_events` cuts are made; what would close later is met by the contact
+// spring.
 
 #include <haptics/core/contact/detection.hpp>
 
@@ -33,16 +35,20 @@ void find_contacts(const Model& model, Data& data, double dt) {
 
 void advance(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output) {
     double left = dt;
-    const int events = data.plan.runs(Stage::collisions) ? model.settings.max_events : 0;
+    const bool may_hit = data.system.points > 0 && data.plan.runs(Stage::collisions);
+    const int events =
+        may_hit && model.settings.contact_mode != ContactMode::penalty ? model.settings.max_events : 0;
     for (int event = 0; event < events; ++event) {
-        const double time = local::next_collision(model, data, left);
-        if (time < 0.0)
-            break;
-        if (time > 0.0) {
-            local::integrate(model, data, hand, time, left - time, time / dt, output);
-            left -= time;
-        }
-        if (!local::collide(model, data, output))
+        const double foreseen = local::next_collision(model, data, left);
+        const double wanted = foreseen < 0.0 ? left : foreseen;
+        double done = 0.0;
+        if (wanted > 0.0)
+            done = local::integrate_to_hit(model, data, hand, wanted, left - wanted, dt, output);
+        left -= done;
+        if (foreseen < 0.0 && done >= wanted)
+            return;
+        // what forces slowed down on the way has not closed yet
+        if (!local::collide(model, data, output) && done == 0.0)
             break;
     }
     if (left > 0.0)

@@ -44,6 +44,15 @@ double force_of(const HapticReport& report, int link, std::uint64_t body) {
     return sum.norm();
 }
 
+int hits(const HapticReport& report, int link, std::uint64_t body) {
+    int count = 0;
+    for (int i = 0; i < report.contact_count; ++i) {
+        const ContactReport& c = report.contact_list[static_cast<std::size_t>(i)];
+        count += c.body == body && c.link == link && c.state == ContactState::colliding ? 1 : 0;
+    }
+    return count;
+}
+
 Experiment2Outcome write_run(const std::string& path, const Experiment2Options& o) {
     std::ofstream out(path);
     out << "t_s,device_x_m,device_y_m,proxy_x_m,proxy_y_m,error_m,force_x_n,force_y_n,wall_link_1_n,wall_"
@@ -143,21 +152,20 @@ TEST_SUITE("experiment 2") {
             o.obstacles = true;
             double wall_1 = 0.0;
             double wall_2 = 0.0;
-            double object_3 = 0.0;
+            int object_3 = 0;
             double largest = 0.0;
             const Experiment2Outcome r =
                 run_experiment2(o, [&](const HapticReport& now, const Pose&, double) {
                     wall_1 = std::max(wall_1, force_of(now, 0, 100));
                     wall_2 = std::max(wall_2, force_of(now, 1, 100));
-                    object_3 = std::max(object_3, force_of(now, 2, 200));
+                    object_3 += hits(now, 2, 200);
                     largest = std::max(largest, now.force.head<2>().norm());
                 });
             CHECK(r.faults == Fault::none);
-            // which link comes first hangs on the swing, and that on the assumed mass
-            if (ratio == 1.0)
-                CHECK(wall_1 > 1.0);
+            CHECK(wall_1 > 1.0);
             CHECK(wall_2 > 1.0);
-            CHECK(object_3 > 1.0);
+            // thrown away by impulses, not pushed
+            CHECK(object_3 > 0);
             CHECK(largest <= 40.0 + 1e-9);
             CHECK(r.peak < 1e-3);
         }

@@ -291,6 +291,38 @@ TEST_SUITE("placement") {
         CHECK(session.report().faults == Fault::none);
     }
 
+    TEST_CASE(
+        "a push through a scaled mapping: the coupling bears what the device can give, no energy comes of "
+        "it, and the hand feels its push") {
+        for (const double scale : {0.3, 3.0}) {
+            CAPTURE(scale);
+            SimulatedPantographOptions d;
+            d.encoder_model = EncoderModel::exact;
+            d.measures_force = true;
+            d.limit_motors = false;
+            d.hand = pushing_hand(Wrench(0.0, -3.0, 0.0), 0.7);
+            SimulatedPantograph device(d);
+            SessionSettings s;
+            s.mapping.scale = scale;
+            SafetyLimits limits;
+            limits.max_force = 20.0;
+            OutputGate gate(limits, device.kinematics());
+            gate.set_homed(true);
+            Session session(s, shared::box_tool(0.3), gate, device, Pose(0.0, 0.0125, 0.0));
+            session.take(*shared::floor_of(1));
+            for (int i = 0; i < 3000; ++i)
+                session.step();
+            const HapticReport& r = session.report();
+            CHECK(r.energy_injected < 1e-4);
+            CHECK(r.contacts == 1);
+            CHECK(scale * r.force.y() == doctest::Approx(3.0).epsilon(0.01));
+            CHECK(r.max_penetration == doctest::Approx(3.0 / scale / 15000.0).epsilon(0.01));
+            // told as the device gives it
+            CHECK(r.run.max_force >= 2.9);
+            CHECK(r.run.max_force <= limits.max_force + 1e-9);
+        }
+    }
+
     TEST_CASE("clutch, mapping, turn, holding and grabbing in any order: finite, within the limits, and at "
               "peace in the end") {
         testing::Random random(77);

@@ -69,7 +69,7 @@ constexpr Beyond k_beyond[] = {
     {"lossy", 60.0, 0.02, 0.3, Motion::constant, 15000.0, 6.52},
     {"lossy", 60.0, 0.02, 0.3, Motion::sine, 15000.0, 3.96},
     {"lossy", 60.0, 0.02, 0.3, Motion::swing, 15000.0, 1.41},
-    {"lossy", 60.0, 0.02, 0.3, Motion::cam, 15000.0, 6.69},
+    {"lossy", 60.0, 0.02, 0.3, Motion::cam, 15000.0, 11.4},
     {"lossy", 60.0, 0.02, 0.3, Motion::sine, 5000.0, 1.72},
     {"lossy", 120.0, 0.08, 0.2, Motion::sine, 15000.0, 1.84},
     {"lossy", 120.0, 0.08, 0.2, Motion::swing, 15000.0, 1.18},

@@ -90,7 +90,7 @@ inline SimulatedHandOptions experiment2_hand(const Experiment2Options& o) {
 
 inline std::unique_ptr<Neighborhood> experiment2_obstacles() {
     auto n = empty_world();
-    add_body(n->bodies, 100, BodyKind::fixed, paper_surface(), Pose::Zero());
+    add_body(n->bodies, 100, BodyKind::fixed, paper_surface(), Pose(0.0, -0.01, 0.2));
     add_piece(n->bodies, make_box(Vec2(0.06, 0.1), Vec2(0.24, 0.07)));
     Body& object = n->bodies.body[static_cast<std::size_t>(
         add_body(n->bodies, 200, BodyKind::movable, paper_surface(), Pose(0.25, -0.04, 0.0)))];
