@@ -313,6 +313,11 @@ def page(folder: Path, pictures: dict[str, str]) -> str:
         ("What a scene leaves out", plan_part(folder)),
         ("Regression of feel", feel_part(folder, pictures)),
     ]
+    scene = next((r["value"] for r in read(folder / "scene.csv") if r["what"] == "scene"), "")
+    if scene:
+        import scene_html
+
+        sections.insert(0, (html.escape(f"Scene {scene}"), scene_html.scene_part(folder, pictures)))
     body = "\n".join(f"<h2>{title}</h2>\n{text}" for title, text in sections)
     files = ", ".join(f'<a href="{p.name}">{p.name}</a>' for p in sorted(folder.glob("*.csv")))
     return (

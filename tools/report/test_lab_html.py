@@ -54,6 +54,18 @@ class Page(unittest.TestCase):
         self.assertLess(page.index("wild"), page.index("calm"))
         self.assertIn('<td class="FAIL">FAIL</td>', page)
 
+    def test_a_scene_comes_first_with_what_is_to_be_said_of_it(self) -> None:
+        self.write("scene.csv", "what,value\nscene,res://a<b.tscn\nnote,it never touched anything\nleft out: gravity,gravity is zero\n")
+        self.write("scene_recommended.csv", "experiment,motion,method,reason,repeats_within_m\nscene,smooth,penalty,why so,0.002\n")
+        self.write("scene_plan.csv", "bodies,bodies_sent,bodies_without_place,ns_per_step_planned,ns_per_step_everything,times_cheaper,largest_difference_m\n9,2,3,10,50,5,0\n")
+        columns = "wall,stiffness_n_per_m,damping_n_s_per_m,mass_kg,integrator,rate_hz,verdict,semi_implicit_floor_kg\n"
+        self.write("scene_stability.csv", columns + "W,1,2,3,exact,500,stable,9\nW,1,2,3,exact,250,unstable,9\n")
+        page = lab_html.page(self.folder, {})
+        self.assertIn("<h2>Scene res://a&lt;b.tscn</h2>", page)
+        self.assertLess(page.index("never touched"), page.index("Other engines"))
+        for text in ("up to 0.002 m apart", "gravity: gravity is zero", "3 bodies had no place", "why so", "250 (unstable)"):
+            self.assertIn(text, page)
+
     def test_the_stiffest_wall_stops_at_the_first_that_is_not_stable(self) -> None:
         rows = "direct,500,1,1e-6,100,stable\ndirect,500,1,1e-6,1000,chattering\ndirect,500,1,1e-6,10000,stable\n"
         rows += "four_channel,500,1,1e-6,100,stable\nfour_channel,500,1,1e-6,1000,stable\nfour_channel,500,1,1e-6,10000,stable\n"
