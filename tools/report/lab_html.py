@@ -303,8 +303,10 @@ def peers_part(folder: Path) -> str:
 
 def page(folder: Path, pictures: dict[str, str]) -> str:
     """The whole page. `pictures`: name to base64 PNG."""
+    import peers_html
+
     sections = [
-        ("Other engines", peers_part(folder)),
+        ("Other engines", peers_html.peers_part(folder) + peers_part(folder)),
         ("Error against run time", error_part(folder, pictures)),
         ("Experiment 1", experiment1_part(folder, pictures)),
         ("Experiment 2", experiment2_part(folder)),

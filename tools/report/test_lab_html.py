@@ -27,6 +27,7 @@ class Page(unittest.TestCase):
         self.assertIn("host.csv is missing", page)
         self.assertEqual(page.count("Not measured in this run"), 7)
         self.assertIn("Absent: no benchmark of other engines", page)
+        self.assertIn("peg and wall in other engines: not measured in this run", page)
 
     def test_pictures_are_inside_and_nothing_is_fetched(self) -> None:
         self.write("stability.csv", "verdict\nstable\n")
@@ -65,6 +66,24 @@ class Page(unittest.TestCase):
         self.assertLess(page.index("never touched"), page.index("Other engines"))
         for text in ("up to 0.002 m apart", "gravity: gravity is zero", "3 bodies had no place", "why so", "250 (unstable)"):
             self.assertIn(text, page)
+
+    def test_what_other_engines_do_better_is_said_first_and_goals_are_judged(self) -> None:
+        columns = "motion,error_asked_m,engine,method,steps_per_s,error_m,truth_difference_m,us_per_simulated_s,us_low,us_high\n"
+        rows = "swift,1e-09,ours,Dormand-Prince 8,9,1e-10,1e-14,100,1,1\nswift,1e-09,ours,Euler,,1,1e-14,,,\n"
+        rows += "swift,1e-09,mujoco 9,Runge-Kutta 4,9,1e-10,1e-14,2900,1,1\nswift,1e-09,quick 1,RK,9,1e-10,1e-14,50,1,1\n"
+        rows += "swift,1e-09,slow 1,Euler,,1,1e-14,,,\nswift,1e-09,gone,missing: no network,,,,,,\n"
+        self.write("peers_precision.csv", columns + rows)
+        columns = "scene,way,setup,deepest_m,behind_hand_m,ns_per_step,ns_low,ns_high\n"
+        self.write("peers_contact.csv", columns + 'peg,"ours, linearly implicit",x,2e-6,0,500,1,1\npeg,other,x,1e-6,0,900,1,1\n')
+        page = lab_html.page(self.folder, {})
+        self.assertIn("MuJoCo Runge-Kutta 4 takes 29 times as long as ours, wanted 30: fail", page)
+        self.assertIn("2 µm deepest, wanted at most 3: pass", page)
+        self.assertIn("500 ns a step, wanted at most 600: pass", page)
+        self.assertIn("Better than ours: other overlaps by at most 1 µm where ours has 2 (peg)", page)
+        self.assertNotIn("other takes", page)
+        self.assertIn("gone is missing: no network", page)
+        self.assertLess(page.index("Better than ours: quick 1, RK: 0.5 times"), page.index("wanted 30"))
+        self.assertIn("not reached", page)
 
     def test_the_stiffest_wall_stops_at_the_first_that_is_not_stable(self) -> None:
         rows = "direct,500,1,1e-6,100,stable\ndirect,500,1,1e-6,1000,chattering\ndirect,500,1,1e-6,10000,stable\n"

@@ -60,13 +60,15 @@ TEST_CASE("a lock-step run records one row a step and repeats bit for bit") {
 TEST_CASE("samples of a recording are where the grip was, with the mean force since the one before") {
     Experiment1 e(soft());
     HapticRunner runner(std::move(e.session), nullptr);
-    runner.record(1.0);
+    runner.record(2.0);
     const auto floor = shared::floor_of(1);
-    runner.neighborhood() = *floor;
-    runner.neighborhood().sequence = 2;
-    runner.publish();
-    runner.advance(0.9);
-    runner.advance(0.1);
+    for (int tick = 1; tick <= 120; ++tick) {
+        runner.neighborhood() = *floor;
+        runner.neighborhood().sequence = static_cast<std::uint64_t>(tick) + 1;
+        runner.neighborhood().time = runner.now();
+        runner.publish();
+        runner.advance(1.0 / 60.0);
+    }
     std::string error;
     const std::string rows = "runner_rows.csv";
     const std::string samples = "runner_samples.csv";
@@ -90,8 +92,8 @@ TEST_CASE("samples of a recording are where the grip was, with the mean force si
     };
     const auto all = read(rows);
     const auto thin = read(samples);
-    REQUIRE(all.size() == 1000);
-    REQUIRE(thin.size() == 250);
+    REQUIRE(all.size() == 2000);
+    REQUIRE(thin.size() == 500);
     double most = 0.0;
     for (std::size_t i = 0; i < thin.size(); ++i) {
         const auto& last = all[4 * i + 3];
