@@ -10,9 +10,11 @@
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <string_view>
 
 #include "host.hpp"
 #include "peers_bench.hpp"
+#include "peers_report.hpp"
 
 namespace {
 
@@ -99,6 +101,14 @@ bool take_peers() {
 }
 
 int run(int argc, char** argv) {
+    // haptics_bench --report=FOLDER [--quick]: no benchmarks, but the report's tables of other engines
+    constexpr std::string_view k_report = "--report=";
+    const bool quick = argc == 3 && std::string_view(argv[2]) == "--quick";
+    if ((argc == 2 || quick) && std::string_view(argv[1]).starts_with(k_report)) {
+        bench::pin_to_one_core();
+        bench::write_peer_tables(std::string(argv[1] + k_report.size()), quick);
+        return 0;
+    }
     bool writes_file = false;
     for (int i = 1; i < argc; ++i)
         writes_file = writes_file || std::string(argv[i]).starts_with("--benchmark_out=");

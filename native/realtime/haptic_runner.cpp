@@ -54,6 +54,47 @@ bool HapticRunner::write_recording(const std::string& path, std::string& error) 
     return good;
 }
 
+bool HapticRunner::write_samples(const std::string& path, double interval, std::string& error) {
+    collect();
+    const double step = session_->settings().step;
+    const double ratio = interval / step;
+    const auto steps = static_cast<std::size_t>(ratio > 0.0 && ratio < 1e9 ? std::lround(ratio) : 0);
+    if (steps == 0 || std::abs(ratio - static_cast<double>(steps)) > 1e-4 * ratio) {
+        error = "Samples every " + std::to_string(interval) + " s are no whole number of steps of " +
+                std::to_string(step) + " s. Choose a multiple of the step.";
+        return false;
+    }
+    const std::vector<std::string>& names = run_column_names();
+    const auto column = [&names](const char* name) {
+        return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+    };
+    const std::array<std::size_t, 4> last{column("proxy_x_m"), column("proxy_y_m"), column("proxy_theta_rad"),
+                                          column("energy_injected_j")};
+    const std::array<std::size_t, 4> mean{column("force_x_n"), column("force_y_n"),
+                                          column("contact_force_x_n"), column("contact_force_y_n")};
+    const std::size_t contacts = column("contacts");
+    CsvWriter writer;
+    bool good = writer.open(path, {"t_s", "x_m", "y_m", "theta_rad", "energy_j", "force_x_n", "force_y_n",
+                                   "contact_x_n", "contact_y_n", "contacts"});
+    const std::size_t width = names.size();
+    for (std::size_t first = 0; good && (first + steps) * width <= rows_.size(); first += steps) {
+        const auto at = [&](std::size_t row, std::size_t name) { return rows_[row * width + name]; };
+        std::array<double, 10> sample{};
+        sample[0] = static_cast<double>(first + steps) * step;
+        for (std::size_t i = 0; i < last.size(); ++i)
+            sample[1 + i] = at(first + steps - 1, last[i]);
+        for (std::size_t row = first; row < first + steps; ++row) {
+            for (std::size_t i = 0; i < mean.size(); ++i)
+                sample[5 + i] += at(row, mean[i]) / static_cast<double>(steps);
+            sample[9] = std::max(sample[9], at(row, contacts));
+        }
+        good = writer.write_row(sample);
+    }
+    good = good && writer.finish();
+    error = writer.error();
+    return good;
+}
+
 bool HapticRunner::start(const LoopOptions& options) {
     start_ns_ = loop_clock_ns();
     return thread_.start(*this, options);

@@ -8,7 +8,7 @@
 namespace haptics {
 
 LockstepClock::LockstepClock(double rate_hz) noexcept
-    : period_ns_(period_ns(is_valid_rate(rate_hz) ? rate_hz : k_default_rate_hz)) {}
+    : period_ns_(period_ns(is_valid_lockstep_rate(rate_hz) ? rate_hz : k_default_rate_hz)) {}
 
 int LockstepClock::begin_tick(double duration_s) noexcept {
     const double duration = duration_s > 0.0 ? std::min(duration_s, k_longest_tick_s) : 0.0;

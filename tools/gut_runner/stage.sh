@@ -27,6 +27,8 @@ else
         case $name in addons | build | cmake | project.godot | *.md | LICENSE | Makefile | CMake* | *rc) continue ;; esac
         [[ -d $entry && -e $entry/.gdignore ]] || ln -s "$entry" "$project/$name"
     done
+    # and the scripts behind the commands, which are tested too; copies, so that no .uid file lands beside them
+    mkdir -p "$project/tools/run" && cp "$root"/tools/run/*.gd "$project/tools/run/"
     for entry in "$root"/addons/*; do
         [[ ${entry##*/} == gut ]] || ln -s "$entry" "$project/addons/${entry##*/}"
     done

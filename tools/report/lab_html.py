@@ -303,8 +303,10 @@ def peers_part(folder: Path) -> str:
 
 def page(folder: Path, pictures: dict[str, str]) -> str:
     """The whole page. `pictures`: name to base64 PNG."""
+    import peers_html
+
     sections = [
-        ("Other engines", peers_part(folder)),
+        ("Other engines", peers_html.peers_part(folder) + peers_part(folder)),
         ("Error against run time", error_part(folder, pictures)),
         ("Experiment 1", experiment1_part(folder, pictures)),
         ("Experiment 2", experiment2_part(folder)),
@@ -313,6 +315,11 @@ def page(folder: Path, pictures: dict[str, str]) -> str:
         ("What a scene leaves out", plan_part(folder)),
         ("Regression of feel", feel_part(folder, pictures)),
     ]
+    scene = next((r["value"] for r in read(folder / "scene.csv") if r["what"] == "scene"), "")
+    if scene:
+        import scene_html
+
+        sections.insert(0, (html.escape(f"Scene {scene}"), scene_html.scene_part(folder, pictures)))
     body = "\n".join(f"<h2>{title}</h2>\n{text}" for title, text in sections)
     files = ", ".join(f'<a href="{p.name}">{p.name}</a>' for p in sorted(folder.glob("*.csv")))
     return (

@@ -196,6 +196,9 @@ def draw_all(folder: Path) -> dict[str, str]:
     errors = read(folder / "error_vs_runtime.csv")
     for name in dict.fromkeys(r["experiment"] for r in errors):
         pictures[f"error_{name}"] = draw_error([r for r in errors if r["experiment"] == name])
+    scene = read(folder / "scene_error.csv")
+    if scene:
+        pictures["scene_error"] = draw_error([{**r, "position_rms_m": r["position_rms_m"].replace("inf", "nan")} for r in scene])
     stability = read(folder / "stability.csv")
     if stability:
         pictures["stability"] = draw_stability(stability)

@@ -110,6 +110,14 @@ func body_of(number: int) -> Node2D:
 	return reader.node if reader != null and is_instance_valid(reader.node) else null
 
 
+## The surface of what has that number; null when it is gone.
+func surface_of(number: int) -> HapticSurface:
+	var reader := _finder.reader_of(number)
+	if reader == null or not reader.is_present():
+		return null
+	return reader.surface(default_surface)
+
+
 ## Forgets everything.
 func clear() -> void:
 	_finder.clear()

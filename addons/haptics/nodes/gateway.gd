@@ -292,3 +292,9 @@ func home_device() -> PackedStringArray:
 ## Writes what was recorded as CSV. Returns what went wrong.
 func save_recording(path: String) -> PackedStringArray:
 	return server().world_save_recording(_world, path)
+
+
+## Writes the same in steps of `interval` (s, a whole number of haptic steps): where the grip then
+## is, and the mean forces since the sample before. Returns what went wrong.
+func save_samples(path: String, interval: float) -> PackedStringArray:
+	return server().world_save_samples(_world, path, interval)

@@ -14,6 +14,8 @@ const LinkageReader := preload("../environment/linkage_reader.gd")
 
 # below this scale of time a scene counts as paused
 const _LEAST_TIME_SCALE := 0.1
+# px
+const _EVERYWHERE := 1e6
 
 ## The native world.
 var native := Gateway.new()
@@ -194,6 +196,8 @@ func aim(point: Vector2, angle: float) -> void:
 
 # where to look around: a disc (canvas) that the tool cannot leave before the next snapshot counts
 func _reach_of_tool(tick_seconds: float) -> Array[Vector3]:
+	if _world.has_meta(WorldSettings.WHOLE_SCENE):
+		return [Vector3(tool.global_position.x, tool.global_position.y, _EVERYWHERE)]
 	if not _is_lockstep:
 		_reach.note(Time.get_ticks_usec() * 1e-6)
 	if linkage != null:

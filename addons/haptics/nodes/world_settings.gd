@@ -2,10 +2,15 @@
 extends RefCounted
 ## The settings of a world as the native side takes them.
 
+## Metadata of a world that is sent its whole scene and runs every stage of its step, whether there
+## is something to do or not: to see what is saved otherwise.
+const WHOLE_SCENE := &"haptic_whole_scene"
+
 # in the order of the enums of HapticWorld2D
 const _COUPLINGS: PackedStringArray = ["four_channel", "virtual_coupling", "direct"]
 const _CONTACTS: PackedStringArray = ["penalty_impulse", "penalty"]
-const _INTEGRATORS: PackedStringArray = ["linearly_implicit", "semi_implicit", "exact"]
+## Names of the integrators, in the order of the enum.
+const INTEGRATORS: PackedStringArray = ["linearly_implicit", "semi_implicit", "exact"]
 const _METHODS: PackedStringArray = ["poisson", "mass_weighted", "paper"]
 
 
@@ -35,9 +40,10 @@ static func of(world: HapticWorld2D) -> Dictionary:
 		"arm_at_start": world.arm_at_start,
 		"hold_at_start": world.hold_at_start,
 		"contact": _CONTACTS[world.contact],
-		"integrator": _INTEGRATORS[world.integrator],
+		"integrator": INTEGRATORS[world.integrator],
 		"collision_method": _METHODS[world.collision_method],
 		"collision_speed": world.collision_speed,
+		"whole_scene": world.has_meta(WHOLE_SCENE),
 		"safety": limits.to_settings(clampf(heaviest, 0.001, 100.0), clampf(largest, 1e-6, 10.0)),
 	}
 

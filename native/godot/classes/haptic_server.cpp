@@ -406,6 +406,13 @@ PackedStringArray HapticServer::world_save_recording(int64_t world, const String
     return problems.to_godot();
 }
 
+PackedStringArray HapticServer::world_save_samples(int64_t world, const String& path, double interval) {
+    Problems problems;
+    if (HapticWorld* w = find(world))
+        w->save_samples(path.utf8(), interval, problems);
+    return problems.to_godot();
+}
+
 void HapticServer::_bind_methods() {
     ClassDB::bind_method(D_METHOD("get_version"), &HapticServer::get_version);
     ClassDB::bind_method(D_METHOD("get_build_info"), &HapticServer::get_build_info);
@@ -452,6 +459,8 @@ void HapticServer::_bind_methods() {
     ClassDB::bind_method(D_METHOD("world_home_device", "world"), &HapticServer::world_home_device);
     ClassDB::bind_method(D_METHOD("world_save_recording", "world", "path"),
                          &HapticServer::world_save_recording);
+    ClassDB::bind_method(D_METHOD("world_save_samples", "world", "path", "interval"),
+                         &HapticServer::world_save_samples);
 
     BIND_ENUM_CONSTANT(STATE_STEP);
     BIND_ENUM_CONSTANT(STATE_TIME);

@@ -125,7 +125,7 @@ void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const doub
     n.echo_count = echo_count_;
     // only the stages that the step needs with these bodies; the tool and the method never change while it
     // runs
-    n.plan = choose_plan(runner_->session().model(), n);
+    n.plan = settings_.whole_scene ? Plan() : choose_plan(runner_->session().model(), n);
     plan_ = n.plan;
     shown_.bodies.body_count = n.bodies.body_count;
     shown_.bodies.piece_count = n.bodies.piece_count;
@@ -147,6 +147,9 @@ void HapticWorld::begin(bool realtime, double record_seconds, Problems& problems
         problems.add("The world has no device. Set a HapticDevice resource.");
     if (!std::isfinite(record_seconds) || record_seconds < 0.0 || record_seconds > 3600.0)
         problems.add("A recording of " + seconds_text(record_seconds) + " is not possible; at most 3600 s.");
+    if (realtime && !is_valid_rate(settings_.loop.rate_hz))
+        problems.add("The rate is " + std::to_string(settings_.loop.rate_hz) +
+                     " Hz; in real time it must lie between 250 and 10000 Hz.");
     if (!problems.none())
         return;
     DeviceOptions device = *device_options_;
@@ -331,6 +334,9 @@ Dictionary HapticWorld::statistics() const {
     step["p50"] = s.step_time.p50_ns();
     step["p99"] = s.step_time.percentile(0.99);
     step["max"] = s.step_time.max_ns;
+    step["mean"] = s.step_time.mean_ns();
+    // of a lock-step's mean: what simulates the device
+    step["simulation"] = device_->simulation_ns();
     d["step_ns"] = step;
     d["scheduling"] = String(scheduling_);
     d["scheduling_details"] = String(scheduling_details_);
@@ -361,6 +367,8 @@ Dictionary HapticWorld::statistics() const {
     d["plan"] = plan();
     d["coupling_stiffness_n_m"] = gains_.stiffness.x();
     d["coupling_damping_n_s_m"] = gains_.damping.x();
+    d["coupling_stiffness_n_m_rad"] = gains_.stiffness.z();
+    d["coupling_damping_n_m_s_rad"] = gains_.damping.z();
     const Dictionary device = device_->statistics();
     if (!device.is_empty())
         d["device"] = device;
@@ -402,6 +410,16 @@ void HapticWorld::home_device(Problems& problems) {
         problems.add("The world does not run, so its device cannot be homed. Start it first.");
     else
         device_->home(problems);
+}
+
+void HapticWorld::save_samples(const std::string& path, double interval, Problems& problems) {
+    if (!running() || !runner_->recording()) {
+        problems.add("There is no recording: start the world with a recording time.");
+        return;
+    }
+    std::string error;
+    if (!runner_->write_samples(path, interval, error))
+        problems.add(error);
 }
 
 void HapticWorld::save_recording(const std::string& path, Problems& problems) {

@@ -1,4 +1,5 @@
 #include <haptics/classes/world_device.hpp>
+#include <haptics/realtime/loop_clock.hpp>
 
 #include <numbers>
 
@@ -30,14 +31,51 @@ class HandHook final : public StepHook {
     std::uint64_t next_{1};
 };
 
+// in lock-step: how much of a step goes into simulating device and hand, which a real loop does not do
+class TimedPort final : public DevicePort {
+  public:
+    explicit TimedPort(SimulatedPantograph& device)
+        : device_(device) {}
+    bool read(DeviceReading& reading) override {
+        const std::int64_t begin = loop_clock_ns();
+        const bool got = device_.read(reading);
+        spent_ns_ += loop_clock_ns() - begin;
+        ++reads_;
+        return got;
+    }
+    void write(const Wrench& force) override { device_.write(force); }
+    void advance(double dt) override {
+        const std::int64_t begin = loop_clock_ns();
+        device_.advance(dt);
+        spent_ns_ += loop_clock_ns() - begin;
+    }
+    [[nodiscard]] Mat3 handle_mass(const Pose& pose) const override { return device_.handle_mass(pose); }
+    [[nodiscard]] int freedoms() const override { return device_.freedoms(); }
+    [[nodiscard]] double mean_ns() const {
+        return reads_ > 0 ? static_cast<double>(spent_ns_) / static_cast<double>(reads_) : 0.0;
+    }
+
+  private:
+    SimulatedPantograph& device_;
+    std::int64_t spent_ns_{0};
+    std::int64_t reads_{0};
+};
+
 class SimulatedDevice final : public WorldDevice {
   public:
-    explicit SimulatedDevice(const SimulatedPantographOptions& options)
+    SimulatedDevice(const SimulatedPantographOptions& options, bool realtime)
         : options_(options)
         , device_(options)
+        , timed_(device_)
+        , realtime_(realtime)
         , hook_(device_) {}
 
-    DevicePort& port() override { return device_; }
+    DevicePort& port() override {
+        if (realtime_)
+            return device_;
+        return timed_;
+    }
+    [[nodiscard]] double simulation_ns() const override { return timed_.mean_ns(); }
     [[nodiscard]] const PantographKinematics& kinematics() const override { return device_.kinematics(); }
     [[nodiscard]] double delay(const SessionSettings& /*session*/) const override {
         return options_.command_delay;
@@ -68,6 +106,8 @@ class SimulatedDevice final : public WorldDevice {
   private:
     SimulatedPantographOptions options_;
     SimulatedPantograph device_;
+    TimedPort timed_;
+    bool realtime_;
     HandHook hook_;
 };
 
@@ -127,7 +167,7 @@ class HidDevice final : public WorldDevice {
 std::unique_ptr<WorldDevice> WorldDevice::make(const DeviceOptions& options, bool realtime,
                                                Problems& problems) {
     if (const auto* simulated = std::get_if<SimulatedPantographOptions>(&options.device))
-        return std::make_unique<SimulatedDevice>(*simulated);
+        return std::make_unique<SimulatedDevice>(*simulated, realtime);
     if (!realtime) {
         problems.add(
             "A HapticHidPantograph needs the mode REALTIME: it goes on in its own time while a lock-step "

@@ -205,6 +205,7 @@ WorldSettings read_world_settings(const Dictionary& from, Problems& problems) {
                                         {{"poisson", CollisionMethod::poisson},
                                          {"mass_weighted", CollisionMethod::mass_weighted},
                                          {"paper", CollisionMethod::paper}});
+    w.whole_scene = r.flag("whole_scene", w.whole_scene);
     w.model.collision_speed = r.number("collision_speed", w.model.collision_speed);
     w.safety = read_safety(r.dictionary("safety"), problems);
     r.finish();

@@ -28,12 +28,14 @@ std::vector<Peer> all_peers() {
     peers.push_back(absent("mujoco", HAPTICS_PEER_MUJOCO_MISSING));
 #else
     peers.push_back(exact("mujoco", mujoco_version(), make_mujoco_chain));
+    peers.back().make_rk4 = make_mujoco_rk4_chain;
     peers.push_back(exact("mujoco_stages", mujoco_version(), make_mujoco_stages_chain));
 #endif
 #ifdef HAPTICS_PEER_PINOCCHIO_MISSING
     peers.push_back(absent("pinocchio", HAPTICS_PEER_PINOCCHIO_MISSING));
 #else
     peers.push_back(exact("pinocchio", pinocchio_version(), make_pinocchio_chain));
+    peers.back().make_rk4 = make_pinocchio_rk4_chain;
 #endif
 #ifdef HAPTICS_PEER_BOX2D_MISSING
     peers.push_back(absent("box2d", HAPTICS_PEER_BOX2D_MISSING));
@@ -48,6 +50,29 @@ std::vector<Peer> all_peers() {
     peers.push_back(box2d);
 #endif
     return peers;
+}
+
+std::vector<BoxWay> all_box_ways() {
+    std::vector<BoxWay> ways{{"ours, linearly implicit", "walls of 1e7 N/m and 20 N s/m", make_own_box, ""},
+                             {"ours, exact", "walls of 1e7 N/m and 20 N s/m", make_own_exact_box, ""}};
+#ifdef HAPTICS_PEER_MUJOCO_MISSING
+    ways.push_back({"mujoco", "", nullptr, HAPTICS_PEER_MUJOCO_MISSING});
+#else
+    const std::string mujoco =
+        "MuJoCo " + mujoco_version() + ", implicitfast, contacts of one dimension, unneeded features off, ";
+    ways.push_back({"mujoco, default contacts", mujoco + "solref 0.02 1", make_mujoco_box, ""});
+    ways.push_back(
+        {"mujoco, stiffest contacts", mujoco + "solref of two steps, 1", make_mujoco_stiff_box, ""});
+#endif
+#ifdef HAPTICS_PEER_BOX2D_MISSING
+    ways.push_back({"box2d", "", nullptr, HAPTICS_PEER_BOX2D_MISSING});
+#else
+    const std::string box2d =
+        "Box2D " + box2d_version() + ", 8 and 3 iterations, warm starting, bullet, no sleep, 1 unit = ";
+    ways.push_back({"box2d, 1 unit = 10 mm", box2d + "10 mm", make_box2d_box, ""});
+    ways.push_back({"box2d, 1 unit = 1 mm", box2d + "1 mm", make_box2d_fine_box, ""});
+#endif
+    return ways;
 }
 
 } // namespace haptics::peers

@@ -31,6 +31,22 @@ class Field {
     std::string text_;
 };
 
+/// Rows of a CSV file by column name; none when there is no such file. Numbers that are not there are nan.
+class CsvRows {
+  public:
+    explicit CsvRows(const std::filesystem::path& path);
+    [[nodiscard]] std::size_t size() const { return rows_.size(); }
+    /// Throws std::runtime_error, which names the column, when there is none of that name.
+    [[nodiscard]] const std::string& text(std::size_t row, const char* column) const;
+    [[nodiscard]] double number(std::size_t row, const char* column) const;
+
+  private:
+    [[nodiscard]] std::size_t find(const char* column) const;
+    std::string name_;
+    std::vector<std::string> columns_;
+    std::vector<std::vector<std::string>> rows_;
+};
+
 class CsvFile {
   public:
     CsvFile(std::filesystem::path path, std::initializer_list<const char*> columns);

@@ -43,6 +43,10 @@ int run(const Options& options, std::string_view only) {
                                   {"experiment2", write_experiment2},
                                   {"extreme", write_extreme},
                                   {"feel", write_feel}};
+    if (only == "scene") {
+        write_scene(options);
+        return 0;
+    }
     HostWatch host;
     for (const Table& table : k_tables)
         if (only.empty() || only == table.name)
@@ -67,7 +71,7 @@ int main(int count, char** arguments) {
     }
     if (options.folder.empty()) {
         std::fputs("usage: haptics_report FOLDER [--quick] [--only "
-                   "plan|error|stability|experiment1|experiment2|extreme|feel]\n",
+                   "plan|error|stability|experiment1|experiment2|extreme|feel|scene]\n",
                    stderr);
         return 2;
     }

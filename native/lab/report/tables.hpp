@@ -34,6 +34,10 @@ void write_extreme(const Options& options);
 /// feel.csv: the traces whose feel is kept, as they are now.
 void write_feel(const Options& options);
 
+/// What was measured on a scene of the user's (tools/run/scene_sweep.gd left it in the folder) becomes
+/// scene_error.csv, scene_recommended.csv, scene_loop.csv, scene_stability.csv and scene_plan.csv.
+void write_scene(const Options& options);
+
 /// A line of progress on the terminal.
 void show_progress(const char* what, double share);
 

@@ -69,12 +69,12 @@ TrackError larger(const TrackError& a, const TrackError& b) {
             std::max(a.force_rms, b.force_rms), std::max(a.energy_max, b.energy_max)};
 }
 
-Reference make_reference(const Experiment& experiment, Method method) {
-    const Track coarse = experiment.reference(method, 0);
-    const Track middle = experiment.reference(method, 1);
+Reference make_reference(ReferenceRuns runs, const TrackError& unrest) {
     Reference r;
-    r.track = experiment.reference(method, 2);
-    r.uncertainty = larger(compare(coarse, middle), compare(middle, r.track));
+    const TrackError first = compare(runs.refinement[0], runs.refinement[1]);
+    const TrackError second = compare(runs.refinement[1], runs.refinement[2]);
+    r.uncertainty = larger(larger(first, second), unrest);
+    r.track = std::move(runs.refinement[2]);
     return r;
 }
 
@@ -84,17 +84,23 @@ Trust trust(const TrackError& seen, const TrackError& doubt, double good_enough)
     return doubt.position_rms <= good_enough ? Trust::upper_bound : Trust::not_converged;
 }
 
-WorkPrecisionRow measure(const Experiment& experiment, const Setting& setting, const Reference& reference,
-                         const SweepOptions& options) {
+WorkPrecisionRow judge_run(const Setting& setting, const Track& track, const Reference& reference,
+                           double good_enough) {
     WorkPrecisionRow row;
     row.setting = setting;
     const TrackError& u = reference.uncertainty;
     const TrackError doubt{10.0 * u.position_rms, 10.0 * u.position_max, 10.0 * u.force_rms,
                            10.0 * u.energy_max};
-    const TrackError seen = compare(follow(experiment, setting), reference.track);
-    row.trust = trust(seen, doubt, options.good_enough);
+    const TrackError seen = compare(track, reference.track);
+    row.trust = trust(seen, doubt, good_enough);
     row.error = larger(seen, doubt);
     row.reference_difference = u.position_max;
+    return row;
+}
+
+WorkPrecisionRow measure(const Experiment& experiment, const Setting& setting, const Reference& reference,
+                         const SweepOptions& options) {
+    WorkPrecisionRow row = judge_run(setting, follow(experiment, setting), reference, options.good_enough);
     std::unique_ptr<Run> run;
     const long steps = std::lround(experiment.seconds * setting.rate);
     row.step_ns =
@@ -176,7 +182,11 @@ WorkPrecision sweep(const Experiment& experiment, const SweepOptions& options) {
     const std::size_t total = experiment.methods.size() * experiment.schemes.size() * options.rates.size();
     std::size_t done = 0;
     for (const Method method : experiment.methods) {
-        const Reference reference = make_reference(experiment, method);
+        const Reference reference =
+            make_reference({method,
+                            {experiment.reference(method, 0), experiment.reference(method, 1),
+                             experiment.reference(method, 2)}},
+                           {});
         for (const Scheme scheme : experiment.schemes)
             for (const double rate : options.rates) {
                 ++done;
@@ -190,6 +200,24 @@ WorkPrecision sweep(const Experiment& experiment, const SweepOptions& options) {
     }
     for (const Method method : experiment.methods)
         mark_front(all, method, options.good_enough);
+    return all;
+}
+
+WorkPrecision assess(const std::vector<ReferenceRuns>& references, const std::vector<MeasuredRun>& runs,
+                     const TrackError& unrest, double good_enough) {
+    WorkPrecision all;
+    for (const ReferenceRuns& known : references) {
+        const Reference reference = make_reference(known, unrest);
+        for (const MeasuredRun& run : runs) {
+            if (run.setting.method != known.method)
+                continue;
+            WorkPrecisionRow row = judge_run(run.setting, run.track, reference, good_enough);
+            row.step_ns = run.step_ns;
+            row.second_us = row.step_ns.median * run.setting.rate * 1e-3;
+            all.rows.push_back(row);
+        }
+        mark_front(all, known.method, good_enough);
+    }
     return all;
 }
 

@@ -15,6 +15,39 @@ using sweep::Method;
 using sweep::Scheme;
 
 TEST_SUITE("sweep") {
+    TEST_CASE("runs made elsewhere are judged as the sweep's own, and no better than equal runs agree") {
+        // motions that are off by their step times 1 mm, as a method of first order is
+        const auto track = [](double rate) {
+            sweep::Track t(50);
+            for (std::size_t i = 0; i < t.size(); ++i)
+                t[i].position = Vec2(std::sin(0.1 * static_cast<double>(i)) + 1.0 / rate, 0.0);
+            return t;
+        };
+        const std::vector<sweep::ReferenceRuns> references{
+            {Method::impulse, {track(16e3), track(32e3), track(64e3)}}};
+        const auto run = [&](double rate, double ns) {
+            return sweep::MeasuredRun{{Scheme::exact, Method::impulse, rate}, track(rate), {ns, ns, ns}};
+        };
+        std::vector<sweep::MeasuredRun> runs{run(500.0, 100.0), run(1000.0, 100.0), run(32e3, 100.0)};
+        runs.push_back(run(2000.0, 100.0));
+        runs.back().track.resize(20);
+        runs.push_back(run(500.0, 100.0));
+        runs.back().setting.method = Method::penalty;
+        const sweep::WorkPrecision all = sweep::assess(references, runs, {}, 1e-3);
+        REQUIRE(all.rows.size() == 4);
+        CHECK(all.rows[0].error.position_rms == doctest::Approx(1.0 / 500.0 - 1.0 / 64e3));
+        CHECK(all.rows[0].trust == sweep::Trust::seen);
+        // 16 to 32 kHz changed 31 um
+        CHECK(all.rows[2].error.position_max == doctest::Approx(10.0 / 32e3));
+        CHECK(all.rows[2].trust == sweep::Trust::upper_bound);
+        CHECK(std::isinf(all.rows[3].error.position_rms));
+        CHECK(all.rows[1].recommended);
+        CHECK(all.rows[1].second_us == doctest::Approx(100.0));
+        const sweep::WorkPrecision restless = sweep::assess(references, runs, {0.01, 0.01, 0.0, 0.0}, 1e-3);
+        CHECK(restless.rows[0].trust == sweep::Trust::not_converged);
+        CHECK(restless.rows[0].error.position_rms == doctest::Approx(0.1));
+    }
+
     TEST_CASE("the reference meets the closed form of a bounce with restitution by impulses") {
         sweep::ReferenceDisc disc{};
         disc.mass = 0.3;

@@ -57,6 +57,58 @@ TEST_CASE("a lock-step run records one row a step and repeats bit for bit") {
     CHECK(first == record());
 }
 
+TEST_CASE("samples of a recording are where the grip was, with the mean force since the one before") {
+    Experiment1 e(soft());
+    HapticRunner runner(std::move(e.session), nullptr);
+    runner.record(2.0);
+    const auto floor = shared::floor_of(1);
+    for (int tick = 1; tick <= 120; ++tick) {
+        runner.neighborhood() = *floor;
+        runner.neighborhood().sequence = static_cast<std::uint64_t>(tick) + 1;
+        runner.neighborhood().time = runner.now();
+        runner.publish();
+        runner.advance(1.0 / 60.0);
+    }
+    std::string error;
+    const std::string rows = "runner_rows.csv";
+    const std::string samples = "runner_samples.csv";
+    CHECK_FALSE(runner.write_samples(samples, 0.0015, error));
+    CHECK(error.find("multiple") != std::string::npos);
+    REQUIRE_MESSAGE(runner.write_recording(rows, error), error);
+    REQUIRE_MESSAGE(runner.write_samples(samples, 0.004, error), error);
+    const auto read = [](const std::string& path) {
+        std::ifstream file(path);
+        std::vector<std::vector<double>> all;
+        std::string line;
+        std::getline(file, line);
+        while (std::getline(file, line)) {
+            std::stringstream fields(line);
+            all.emplace_back();
+            for (std::string field; std::getline(fields, field, ',');)
+                all.back().push_back(std::stod(field));
+        }
+        std::remove(path.c_str());
+        return all;
+    };
+    const auto all = read(rows);
+    const auto thin = read(samples);
+    REQUIRE(all.size() == 2000);
+    REQUIRE(thin.size() == 500);
+    double most = 0.0;
+    for (std::size_t i = 0; i < thin.size(); ++i) {
+        const auto& last = all[4 * i + 3];
+        CHECK(thin[i][0] == doctest::Approx(last[0]));
+        CHECK(thin[i][1] == last[4]);
+        CHECK(thin[i][2] == last[5]);
+        double force = 0.0;
+        for (std::size_t k = 0; k < 4; ++k)
+            force += 0.25 * all[4 * i + k][14];
+        CHECK(thin[i][6] == doctest::Approx(force));
+        most = std::max(most, std::abs(force));
+    }
+    CHECK(most > 1.0);
+}
+
 TEST_CASE("a whole haptic step neither allocates, locks nor blocks") {
     Experiment1 e(soft());
     HapticRunner runner(std::move(e.session), nullptr);

@@ -72,6 +72,11 @@ TEST_CASE("nonsense durations give no steps and a stall is cut") {
     CHECK(clock.next().index == 0);
 }
 
+TEST_CASE("lock-step goes on beyond the rates of a thread") {
+    CHECK(LockstepClock(64000.0).next().dt == 15625e-9);
+    CHECK(LockstepClock(100001.0).next().dt == 0.001);
+}
+
 TEST_CASE("a clock of an impossible rate takes the default") {
     CHECK(LockstepClock(0.0).next().dt == 0.001);
     CHECK(LockstepClock(std::numeric_limits<double>::quiet_NaN()).next().dt == 0.001);

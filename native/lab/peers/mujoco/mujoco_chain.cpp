@@ -19,9 +19,9 @@ struct FreeData {
     void operator()(mjData* data) const { mj_deleteData(data); }
 };
 
-std::unique_ptr<mjModel, FreeModel> compile(const ChainPlan& plan) {
+std::unique_ptr<mjModel, FreeModel> compile(const ChainPlan& plan, mjtIntegrator integrator) {
     const std::unique_ptr<mjSpec, FreeSpec> spec(mj_makeSpec());
-    spec->option.integrator = mjINT_EULER;
+    spec->option.integrator = integrator;
     // contacts, constraints, limits, springs, dampers, gravity, actuators, sensors, safety checks: all off
     spec->option.disableflags = (1 << mjNDISABLE) - 1;
     spec->option.enableflags = 0;
@@ -54,8 +54,8 @@ std::unique_ptr<mjModel, FreeModel> compile(const ChainPlan& plan) {
 
 class MujocoChain : public ChainPeer {
   public:
-    explicit MujocoChain(const ChainPlan& plan)
-        : model_(compile(plan))
+    explicit MujocoChain(const ChainPlan& plan, mjtIntegrator integrator = mjINT_EULER)
+        : model_(compile(plan, integrator))
         , data_(mj_makeData(model_.get())) {}
 
     void set_state(const double* position, const double* velocity) override {
@@ -126,6 +126,10 @@ class MujocoStages final : public MujocoChain {
 
 std::unique_ptr<ChainPeer> make_mujoco_chain(const ChainPlan& plan) {
     return std::make_unique<MujocoChain>(plan);
+}
+
+std::unique_ptr<ChainPeer> make_mujoco_rk4_chain(const ChainPlan& plan) {
+    return std::make_unique<MujocoChain>(plan, mjINT_RK4);
 }
 
 std::unique_ptr<ChainPeer> make_mujoco_stages_chain(const ChainPlan& plan) {

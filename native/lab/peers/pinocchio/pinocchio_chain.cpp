@@ -30,7 +30,7 @@ pinocchio::Model build(const ChainPlan& plan) {
     return model;
 }
 
-class PinocchioChain final : public ChainPeer {
+class PinocchioChain : public ChainPeer {
   public:
     explicit PinocchioChain(const ChainPlan& plan)
         : model_(build(plan))
@@ -59,7 +59,7 @@ class PinocchioChain final : public ChainPeer {
         position_ += time_step * velocity_;
     }
 
-  private:
+  protected:
     pinocchio::Model model_;
     pinocchio::Data data_;
     Eigen::VectorXd position_;
@@ -67,10 +67,46 @@ class PinocchioChain final : public ChainPeer {
     Eigen::VectorXd force_;
 };
 
+class PinocchioRk4Chain final : public PinocchioChain {
+  public:
+    explicit PinocchioRk4Chain(const ChainPlan& plan)
+        : PinocchioChain(plan) {
+        for (Eigen::VectorXd* stage : {&stage_, &speed_, &speed_sum_, &rate_sum_})
+            stage->setZero(model_.nv);
+    }
+    void step(double time_step) override {
+        constexpr double k_weight[] = {1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
+        constexpr double k_next[] = {0.5, 0.5, 1.0, 0.0};
+        stage_ = position_;
+        speed_ = velocity_;
+        speed_sum_.setZero();
+        rate_sum_.setZero();
+        for (int i = 0; i < 4; ++i) {
+            pinocchio::aba(model_, data_, stage_, speed_, force_, pinocchio::Convention::WORLD);
+            speed_sum_ += k_weight[i] * speed_;
+            rate_sum_ += k_weight[i] * data_.ddq;
+            stage_ = position_ + k_next[i] * time_step * speed_;
+            speed_ = velocity_ + k_next[i] * time_step * data_.ddq;
+        }
+        position_ += time_step * speed_sum_;
+        velocity_ += time_step * rate_sum_;
+    }
+
+  private:
+    Eigen::VectorXd stage_;
+    Eigen::VectorXd speed_;
+    Eigen::VectorXd speed_sum_;
+    Eigen::VectorXd rate_sum_;
+};
+
 } // namespace
 
 std::unique_ptr<ChainPeer> make_pinocchio_chain(const ChainPlan& plan) {
     return std::make_unique<PinocchioChain>(plan);
+}
+
+std::unique_ptr<ChainPeer> make_pinocchio_rk4_chain(const ChainPlan& plan) {
+    return std::make_unique<PinocchioRk4Chain>(plan);
 }
 
 std::string pinocchio_version() {

@@ -96,6 +96,10 @@ class HapticRunner final : public LoopStep {
     }
     /// Owner: writes all rows as CSV. False with the reason in `error`.
     bool write_recording(const std::string& path, std::string& error);
+    /// Owner: writes the recording in steps of `interval` (s, a whole number of haptic steps) as CSV: where
+    /// the grip then is, the energy that the loop has created, the mean forces since the sample before, and
+    /// how many contacts there were at most. False with the reason in `error`.
+    bool write_samples(const std::string& path, double interval, std::string& error);
 
     [[nodiscard]] const LoopThread& thread() const { return thread_; }
     /// Counts of this run, thread or lock-step.

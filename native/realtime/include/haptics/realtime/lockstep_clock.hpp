@@ -18,7 +18,7 @@ class LockstepClock {
     /// steps.
     static constexpr double k_longest_tick_s = 1.0;
 
-    /// `rate_hz` must be valid (is_valid_rate), otherwise the default rate is taken.
+    /// `rate_hz` must be valid (is_valid_lockstep_rate), otherwise the default rate is taken.
     explicit LockstepClock(double rate_hz = k_default_rate_hz) noexcept;
 
     /// The scene moves on by `duration_s` (>= 0; NaN and negative count as 0). Returns how many steps are now

@@ -32,9 +32,17 @@ inline constexpr double k_max_rate_hz = 10000.0;
 /// Loop rate where nothing else is asked for (Hz).
 inline constexpr double k_default_rate_hz = 1000.0;
 
-/// True for rates that the loop and the lock-step clock accept.
+/// Fastest lock-step (Hz): as a reference for slower loops, not for a device.
+inline constexpr double k_max_lockstep_rate_hz = 100000.0;
+
+/// True for rates that the loop accepts.
 [[nodiscard]] inline bool is_valid_rate(double rate_hz) noexcept {
     return rate_hz >= k_min_rate_hz && rate_hz <= k_max_rate_hz;
+}
+
+/// True for rates that the lock-step clock accepts.
+[[nodiscard]] inline bool is_valid_lockstep_rate(double rate_hz) noexcept {
+    return rate_hz >= k_min_rate_hz && rate_hz <= k_max_lockstep_rate_hz;
 }
 
 /// Period (ns) of a valid rate, rounded to a whole nanosecond.

@@ -41,7 +41,7 @@ struct ObserverSettings {
 };
 
 struct SessionSettings {
-    /// Period of the loop, s, 1e-4 to 4e-3.
+    /// Period of the loop, s, 1e-4 to 4e-3; in lock-step down to 1e-5.
     double step{0.001};
     Coupling coupling{Coupling::four_channel};
     HandForce hand_force{HandForce::combined};

@@ -111,6 +111,7 @@ class HapticServer : public godot::Object {
     godot::PackedStringArray world_tie_body(int64_t world, int64_t body, int64_t linkage, int64_t link);
     godot::PackedStringArray world_home_device(int64_t world);
     godot::PackedStringArray world_save_recording(int64_t world, const godot::String& path);
+    godot::PackedStringArray world_save_samples(int64_t world, const godot::String& path, double interval);
 
   protected:
     static void _bind_methods();

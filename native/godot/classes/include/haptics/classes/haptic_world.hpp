@@ -66,6 +66,8 @@ class HapticWorld {
     /// The device's handle is in its home pose now. Waits for a real device's answer, at most a second.
     void home_device(Problems& problems);
     void save_recording(const std::string& path, Problems& problems);
+    /// The recording in steps of `interval` (s): HapticRunner::write_samples.
+    void save_samples(const std::string& path, double interval, Problems& problems);
     /// The hand takes hold of a linkage elsewhere: `point` in the axes of the link's node, m.
     void grab(std::int64_t link, const Vec2& point, bool pose, Problems& problems);
     /// Of every link of a linkage, in the order of its links: pose of its node (x, y, angle), velocity of its

@@ -40,6 +40,8 @@ class WorldDevice {
     /// Force that a simulated device was sent last (N, N, N m); a real one's own figures tell. Not while the
     /// loop's thread runs.
     [[nodiscard]] virtual Wrench last_force() const { return Wrench::Zero(); }
+    /// Lock-step: the part of a step in which device and hand are simulated, mean, ns.
+    [[nodiscard]] virtual double simulation_ns() const { return 0.0; }
     /// Figures for the run's statistics.
     [[nodiscard]] virtual godot::Dictionary statistics() const { return {}; }
 };

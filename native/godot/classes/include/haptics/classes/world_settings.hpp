@@ -25,6 +25,8 @@ struct WorldSettings {
     SessionSettings session;
     LocalModelSettings model;
     SafetyLimits safety;
+    /// Every stage runs, whether it has something to do or not: to see what the plan saves.
+    bool whole_scene{false};
 };
 
 /// Clutch, mapping and turn; keys mapping_scale, mapping_rotation, mapping_offset, clutched, turn.

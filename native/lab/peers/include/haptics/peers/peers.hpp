@@ -33,6 +33,8 @@ struct Peer {
     /// The chain as it is compared: the same, but an iterative engine gets enough iterations to converge.
     std::unique_ptr<ChainPeer> (*make_converged)(const ChainPlan& plan){nullptr};
     AgreementDemand demand;
+    /// The chain in a method of fourth order; null when the engine has none.
+    std::unique_ptr<ChainPeer> (*make_rk4)(const ChainPlan& plan){nullptr};
 };
 
 /// All peers, present or not.

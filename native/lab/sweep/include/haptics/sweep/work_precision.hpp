@@ -5,6 +5,7 @@
 #include <haptics/sweep/experiment.hpp>
 #include <haptics/sweep/timing.hpp>
 
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -46,6 +47,19 @@ struct WorkPrecision {
     std::vector<Reason> reasons;
 };
 
+/// One motion that was measured somewhere else: its track and its run time (ns a step).
+struct MeasuredRun {
+    Setting setting;
+    Track track;
+    Spread step_ns;
+};
+
+/// Of a method: the motion at three refinements, each with half the step of the one before.
+struct ReferenceRuns {
+    Method method{Method::penalty};
+    std::array<Track, 3> refinement;
+};
+
 struct SweepOptions {
     std::vector<double> rates{250.0, 500.0, 1000.0, 2000.0, 4000.0, 10000.0};
     int repeats{15};
@@ -56,6 +70,12 @@ struct SweepOptions {
 };
 
 [[nodiscard]] WorkPrecision sweep(const Experiment& experiment, const SweepOptions& options);
+
+/// The same for runs that were made elsewhere. A run of a method without reference, or whose track has
+/// another length, is infinitely far off. `unrest`: how far two equal runs are apart, which counts as doubt.
+[[nodiscard]] WorkPrecision assess(const std::vector<ReferenceRuns>& references,
+                                   const std::vector<MeasuredRun>& runs, const TrackError& unrest,
+                                   double good_enough);
 
 /// Marks the points (cost, error) that no other point beats in both; of equal points the first. Points that
 /// are not finite are never on the front.
