@@ -2,12 +2,13 @@
 # Makes a project that sees our files through links and holds exactly one GutTest: our runner, or GUT itself.
 #   stage.sh ours|gut [FOLDER]    with FOLDER: nothing of ours but the settings, and that folder as tests/ (self_test.sh)
 # GUT is taken from addons/gut, or from $GUT_FOLDER to try another copy of it.
-# Prints the project's folder, build/staging/<kind> or build/staging/self_test_<kind>.
+# HAPTICS_LIBRARY names another native library to load, one with checks built in.
+# Prints the project's folder, build/staging/<kind>, build/staging/self_test_<kind> or, with another library, <kind>_checked.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
 root=$(cd "$here/../.." && pwd -P)
 kind=${1:?ours or gut} tests=${2:-}
-project=$root/build/staging/${tests:+self_test_}$kind
+project=$root/build/staging/${tests:+self_test_}$kind${HAPTICS_LIBRARY:+_checked}
 
 mkdir -p "$project/addons"
 touch "$root/build/.gdignore"
@@ -29,8 +30,17 @@ else
     done
     # and the scripts behind the commands, which are tested too; copies, so that no .uid file lands beside them
     mkdir -p "$project/tools/run" && cp "$root"/tools/run/*.gd "$project/tools/run/"
+    [[ -z ${HAPTICS_LIBRARY:-} ]] || rm -rf "$project/addons/haptics"
     for entry in "$root"/addons/*; do
-        [[ ${entry##*/} == gut ]] || ln -s "$entry" "$project/addons/${entry##*/}"
+        case ${entry##*/}:${HAPTICS_LIBRARY:-} in
+            gut:*) ;;
+            haptics:?*)
+                mkdir -p "$project/addons/haptics/bin"
+                find "$entry" -mindepth 1 -maxdepth 1 ! -name bin -exec ln -s -t "$project/addons/haptics" {} +
+                ln -s "$HAPTICS_LIBRARY" "$project/addons/haptics/bin/libhaptics.linux.x86_64.so"
+                ;;
+            *) ln -s "$entry" "$project/addons/${entry##*/}" ;;
+        esac
     done
 fi
 

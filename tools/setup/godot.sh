@@ -40,7 +40,7 @@ build_private_godot() {
     for suite in $GODOT_SUITES; do
         # shellcheck disable=SC2086
         if apt_unpack "$partial" "$suite" $GODOT_PACKAGES; then
-            patch_godot "$partial" "$final"
+            patch_programs "$partial" "$final" godot
             return
         fi
         find "$partial" -mindepth 1 -delete
@@ -48,32 +48,67 @@ build_private_godot() {
     die "could not fetch Godot from the suites $GODOT_SUITES (see the messages of apt above). $help"
 }
 
-# Makes the program start by itself with the loader and libraries of its own folder. Starting it through that loader would do
-# too, but then the editor, which starts the game by the path of its own program, would start the loader.
-patch_godot() {
-    local partial=$1 final=$2 libraries=usr/lib/x86_64-linux-gnu file version
+# Sets templates_path to the folder with godot-template-debug and godot-template-release, of the private copy's version; empty when
+# Godot is not the private copy, which has those that its own editor installed.
+resolve_templates() {
+    templates_path=''
+    resolve_godot
+    [[ $godot_kind == private ]] || return 0
+    install_once godot-templates "$(godot_version "$godot_path") $TEMPLATE_PACKAGES at $cache_dir" build_private_templates
+    templates_path=$cache_dir/godot-templates/usr/bin
+}
+
+build_private_templates() {
+    local partial=$1 final=$2 suite version wanted
+    wanted=$(godot_version "$cache_dir/godot/usr/bin/godot")
+    say "fetching the export templates of Godot $wanted"
+    for suite in $GODOT_SUITES; do
+        # shellcheck disable=SC2086
+        if apt_unpack "$partial" "$suite" $TEMPLATE_PACKAGES; then
+            version=$(sed -n 's/^godot-template-debug_\([0-9.]*\).*/\1/p' "$partial/packages.txt")
+            if [[ $version == "$wanted" ]]; then
+                patch_programs "$partial" "$final" godot-template-debug godot-template-release
+                return
+            fi
+            say "$suite has templates of version ${version:-unknown}"
+        fi
+        find "$partial" -mindepth 1 -delete
+    done
+    die "could not fetch the export templates of Godot $wanted: if there are newer ones, remove $cache_dir/godot, and the newer Godot is fetched"
+}
+
+# patch_programs PARTIAL FINAL PROGRAM...: makes them start by themselves with the loader and libraries of their own folder.
+# Starting one through that loader would do too, but then the editor, which starts the game by the path of its own program, would
+# start the loader.
+patch_programs() {
+    local partial=$1 final=$2 libraries=usr/lib/x86_64-linux-gnu file program version
+    shift 2
     local loader=$libraries/ld-linux-x86-64.so.2
     [[ -x $partial/$loader ]] || die "the fetched C library has no $loader; Debian has moved it"
     local run=("$partial/$loader" --library-path "$partial/$libraries:$partial/$libraries/pulseaudio")
     local patchelf=("${run[@]}" "$partial/usr/bin/patchelf")
-    "${patchelf[@]}" --set-interpreter "$final/$loader" --force-rpath \
-        --set-rpath "$final/$libraries:$final/$libraries/pulseaudio" "$partial/usr/bin/godot"
+    for program in "$@"; do
+        "${patchelf[@]}" --set-interpreter "$final/$loader" --force-rpath \
+            --set-rpath "$final/$libraries:$final/$libraries/pulseaudio" "$partial/usr/bin/$program"
+    done
     # a library with a run path of its own does not look into the program's
     while IFS= read -r file; do
         local path
         path=$("${patchelf[@]}" --print-rpath "$file" 2>/dev/null) && [[ -n $path ]] || continue
         "${patchelf[@]}" --set-rpath "${path//\/$libraries/$final/$libraries}:$final/$libraries" "$file"
     done < <(find "$partial/$libraries" -name '*.so*' -type f -not -path '*/gconv/*')
-    version=$(godot_version_through_loader "$partial" "${run[@]}")
-    [[ -n $version ]] && version_at_least "$version" "$GODOT_MINIMUM" ||
-        die "the private Godot says it is version '${version:-unknown}', wanted $GODOT_MINIMUM or newer"
-    say "Godot $version"
+    for program in "$@"; do
+        version=$(godot_version_through_loader "$partial/usr/bin/$program" "${run[@]}")
+        [[ -n $version ]] && version_at_least "$version" "$GODOT_MINIMUM" ||
+            die "the private $program says it is version '${version:-unknown}', wanted $GODOT_MINIMUM or newer"
+        say "$program $version"
+    done
 }
 
 godot_version_through_loader() {
-    local partial=$1
+    local program=$1
     shift
-    "$@" "$partial/usr/bin/godot" --version 2>/dev/null | grep -oE '^[0-9]+\.[0-9]+(\.[0-9]+)?' | head -n 1 || true
+    "$@" "$program" --version 2>/dev/null | grep -oE '^[0-9]+\.[0-9]+(\.[0-9]+)?' | head -n 1 || true
 }
 
 # The private copy keeps its settings, caches and user:// in our cache. So does any Godot when GODOT_HAPTICS_ISOLATED is set,

@@ -65,6 +65,17 @@ func describe(fallback: HapticSurface) -> Dictionary:
 	}
 
 
+## True while all of its shapes are switched off: then nothing is there to touch, and nothing wrong.
+func is_switched_off() -> bool:
+	var body := node as CollisionObject2D
+	if body == null or body.get_shape_owners().is_empty():
+		return false
+	for owner_id: int in body.get_shape_owners():
+		if not body.is_shape_owner_disabled(owner_id):
+			return false
+	return true
+
+
 ## How it feels.
 func surface(fallback: HapticSurface) -> HapticSurface:
 	return SurfaceReader.find(node, fallback)

@@ -160,6 +160,9 @@ func _describe(reader: BodyReader, problems: PackedStringArray) -> void:
 	if signature == reader.signature:
 		return
 	reader.signature = signature
+	if reader.is_switched_off():
+		reader.is_usable = false
+		return
 	var wrong := reader.problems + _native.set_body(reader.id, description)
 	reader.is_usable = _native.is_valid() and wrong.size() == reader.problems.size()
 	# our own nodes report themselves

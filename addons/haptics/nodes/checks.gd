@@ -38,6 +38,8 @@ static func of_body(body: CollisionObject2D) -> PackedStringArray:
 		reader = FixedBody.new(body, 1, units)
 	var description := reader.describe(world.default_surface if world != null else null)
 	problems.append_array(reader.problems)
+	if reader.is_switched_off():
+		return problems
 	problems.append_array(_without_twins(Gateway.new().set_body(1, description), reader.problems))
 	return problems
 

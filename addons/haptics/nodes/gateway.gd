@@ -168,7 +168,16 @@ func submit(
 	gravity: PackedFloat64Array,
 	discs: PackedFloat64Array
 ) -> PackedStringArray:
-	return server().world_submit(_world, bodies, states, tick_seconds, gravity, discs)
+	return server().world_submit(
+		_world,
+		bodies,
+		states,
+		tick_seconds,
+		gravity,
+		discs,
+		Engine.get_process_frames(),
+		Engine.max_physics_steps_per_frame
+	)
 
 
 ## Convex pieces within reach that did not fit into the last snapshot.

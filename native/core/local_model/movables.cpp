@@ -112,7 +112,7 @@ void meet(MovableState& m, const Body& seen, const Track& track, const Data& dat
     m.belief.velocity = at.velocity + track.offset_velocity;
     m.pending_pose = -track.offset;
     m.pending_velocity = -track.offset_velocity;
-    m.blend_left = track.tick;
+    m.blend_left = track.blend;
     m.heard_time = data.time;
 }
 

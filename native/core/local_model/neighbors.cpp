@@ -135,6 +135,7 @@ Track track_of(const Body& body, const Neighborhood& n, const Data& data) {
     t.tick = std::max(n.tick, 1e-6);
     t.reach = 2.0 * n.tick + data.latency;
     t.taken = data.time;
+    t.blend = t.tick;
     t.still = body.kind == BodyKind::fixed;
     return t;
 }
@@ -149,6 +150,7 @@ bool follow(const PathPoint& from, const Track& before, Track& t) {
     t.presence = before.presence;
     if (before.driven && !before.still && !t.still)
         estimate(before, t);
+    t.blend = blend_time(before, t);
     join(from, t);
     return true;
 }

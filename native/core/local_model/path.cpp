@@ -18,11 +18,16 @@
 // c is the least-squares fit of that over the last k_late_memory or so snapshots, within 0..1.
 //
 // Joining. A new snapshot seldom puts a body where it is shown. The difference e at the time of taking, with
-// its first two derivatives, is taken away over one tick by the polynomial of degree 5 in u that starts with
-// these and ends with three zeros,
-//     (1 - u)^3 (e + (v + 3 e) u + (a / 2 + 3 v + 6 e) u^2),  v = e' tick,  a = e'' tick^2.
+// its first two derivatives, is taken away over one tick, T, by the polynomial of degree 5 in u that starts
+// with these and ends with three zeros,
+//     (1 - u)^3 (e + (v + 3 e) u + (a / 2 + 3 v + 6 e) u^2),  v = e' T,  a = e'' T^2.
 // So pose, velocity and acceleration go on without a jump: a linear blend would kick a contact damper B
-// with B e / tick.
+// with B e / T.
+//
+// Coming back. A body whose snapshot came so late that it had begun to come to rest has to make up for more
+// than an update corrects; in one tick it would be thrown at the tool. It takes the longer the farther it
+// had come to rest, up to k_back, and the snapshots that come meanwhile end the blend no sooner. Its ends
+// are as far apart as those of coming to rest and back at speed: what stopped gently starts gently.
 
 #include "path.hpp"
 
@@ -33,6 +38,7 @@ namespace haptics::local {
 namespace {
 
 constexpr double k_rest = 0.05;
+constexpr double k_back = 0.1;
 // time in which the size of past accelerations is forgotten, s
 constexpr double k_memory = 0.7;
 constexpr double k_late_memory = 10.0;
@@ -90,19 +96,25 @@ PathPoint extrapolated(const Track& t, double time) {
 
 PathPoint shown(const Track& t, double time) {
     PathPoint p = extrapolated(t, time);
-    const double u = (time - t.taken) / t.tick;
+    const double u = (time - t.taken) / t.blend;
     if (u < 0.0 || u >= 1.0)
         return p;
     const double w = 1.0 - u;
-    const Vec3 v = t.tick * t.offset_velocity;
+    const Vec3 v = t.blend * t.offset_velocity;
     const Vec3 c1 = v + 3.0 * t.offset;
-    const Vec3 c2 = 0.5 * t.tick * t.tick * t.offset_acceleration + 3.0 * v + 6.0 * t.offset;
+    const Vec3 c2 = 0.5 * t.blend * t.blend * t.offset_acceleration + 3.0 * v + 6.0 * t.offset;
     const Vec3 q = t.offset + u * (c1 + u * c2);
     const Vec3 q1 = c1 + 2.0 * u * c2;
     p.pose += w * w * w * q;
-    p.velocity += w * w * (w * q1 - 3.0 * q) / t.tick;
-    p.acceleration += w * (2.0 * w * w * c2 - 6.0 * w * q1 + 6.0 * q) / (t.tick * t.tick);
+    p.velocity += w * w * (w * q1 - 3.0 * q) / t.blend;
+    p.acceleration += w * (2.0 * w * w * c2 - 6.0 * w * q1 + 6.0 * q) / (t.blend * t.blend);
     return p;
+}
+
+double blend_time(const Track& before, const Track& t) {
+    const double stopped = t.taken - before.time - before.reach;
+    const double back = std::min(2.0 * std::max(stopped, 0.0), k_back);
+    return std::max({t.tick, back, before.taken + before.blend - t.taken});
 }
 
 void join(const PathPoint& from, Track& t) {

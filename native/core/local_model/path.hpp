@@ -20,6 +20,9 @@ PathPoint extrapolated(const Track& track, double time);
 // Where the body is shown at `time`.
 PathPoint shown(const Track& track, double time);
 
+// How long the path of `track`, which follows that of `before`, takes to join it, s.
+double blend_time(const Track& before, const Track& track);
+
 // Lets the path go on from `from` at the time the snapshot was taken.
 void join(const PathPoint& from, Track& track);
 

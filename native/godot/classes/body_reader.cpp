@@ -25,12 +25,29 @@ struct ShapeContext {
     /// Area of all shapes and its second moment about the center of mass, m^2, m^4.
     double area{0.0};
     double second_moment{0.0};
+    /// Length of all segments and its second moment about the center of mass, m, m^3: what has no area has
+    /// its mass along them.
+    double length{0.0};
+    double length_moment{0.0};
 
+    /// Inertia per mass, m^2; 0 where there is nothing to compute it from.
+    [[nodiscard]] double spread() const {
+        if (area > 0.0)
+            return second_moment / area;
+        return length > 0.0 ? length_moment / length : 0.0;
+    }
     void book(double shape_area, const Vec2& centroid, double moment) {
         area += shape_area;
         second_moment += moment + shape_area * centroid.squaredNorm();
     }
 };
+
+// a thin rod from a to b: L (a a + a b + b b) / 3 about the origin
+void book_segment(ShapeContext& c, const Vec2& from, const Vec2& to) {
+    const double length = (to - from).norm();
+    c.length += length;
+    c.length_moment += length * (from.squaredNorm() + from.dot(to) + to.squaredNorm()) / 3.0;
+}
 
 // disc: pi r^4 / 2 about its middle
 void book_disc(ShapeContext& c, const Vec2& middle, double r) {
@@ -150,8 +167,10 @@ void read_shape(const Dictionary& from, const std::string& place, ShapeContext& 
             book_capsule(c, points[0], points[1], radius);
         }
     } else if (kind == "segment") {
-        if (expect(points.size(), 2, kind, place, c.problems))
+        if (expect(points.size(), 2, kind, place, c.problems)) {
             add(c, id, make_segment(points[0], points[1]), r);
+            book_segment(c, points[0], points[1]);
+        }
     } else if (kind == "half_plane") {
         if (expect(points.size(), 2, kind, place, c.problems) && points[1].norm() > 1e-9)
             add(c, id, make_half_plane(points[0] - c.center, points[1].normalized()), r);
@@ -205,7 +224,7 @@ BodySpec read_body(const Dictionary& from, const std::string& place, const Surfa
                                        "Give it a mass; 0.1 kg suits what a desktop device moves.");
         const bool computed = spec.body.inertia == 0.0;
         if (computed)
-            spec.body.inertia = c.area > 0.0 ? spec.body.mass * c.second_moment / c.area : 0.0;
+            spec.body.inertia = spec.body.mass * c.spread();
         // an inertia that follows from a wrong mass or shape is no second mistake
         if (!computed || (heavy && has_shape))
             check.range("inertia", spec.body.inertia, 1e-12, 1e4, "kg m^2",

@@ -100,10 +100,11 @@ void HapticWorld::remove_body(std::int64_t id) {
 }
 
 void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const double> states,
-                         std::span<const ReachDisc> discs, double tick, const Vec2& gravity,
+                         std::span<const ReachDisc> discs, const Tick& when, const Vec2& gravity,
                          Problems& problems) {
     if (!running())
         return;
+    const double tick = when.length;
     if (!std::isfinite(tick) || tick < 1e-3 || tick > 1.0 || !gravity.allFinite()) {
         problems.add("The tick is " + seconds_text(tick) +
                      "; it must lie between 0.001 and 1 s, and gravity must be finite.");
@@ -117,7 +118,8 @@ void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const doub
                          " was left out: it is not registered, or its pose or velocity is not a number.");
         }
     n.sequence = ++sequence_;
-    n.time = realtime_ ? ticks_.tick(now(), tick) : now();
+    const auto most = static_cast<int>(std::clamp<std::int64_t>(when.most, 1, 1000));
+    n.time = realtime_ ? ticks_.tick(now(), tick, when.frame, most) : now();
     n.tick = tick;
     n.gravity = gravity;
     n.echo_step = echo_step_;

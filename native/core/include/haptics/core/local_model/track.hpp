@@ -26,8 +26,9 @@ struct Track {
     bool still{false};
 
     /// When the snapshot was taken, s; where the body was shown then less where the new path has it, and the
-    /// first two derivatives of that. The difference is gone one tick later.
+    /// first two derivatives of that. The difference is gone `blend` seconds later.
     double taken{0.0};
+    double blend{1.0 / 60.0};
     Pose offset{0.0, 0.0, 0.0};
     Twist offset_velocity{0.0, 0.0, 0.0};
     Vec3 offset_acceleration{0.0, 0.0, 0.0};

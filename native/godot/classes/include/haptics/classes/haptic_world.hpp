@@ -32,10 +32,17 @@ class HapticWorld {
     void set_body(std::int64_t id, const godot::Dictionary& body, Problems& problems);
     void remove_body(std::int64_t id);
 
+    /// The tick of a snapshot: its length (s), the frame that carries it, and how many ticks a frame brings
+    /// at most.
+    struct Tick {
+        double length{0.0};
+        std::int64_t frame{0};
+        std::int64_t most{8};
+    };
     /// Publishes a snapshot of what lies within the discs; ids that could not be used are named in `problems`
     /// (once each), and so is a snapshot that is full.
     void submit(std::span<const std::int64_t> ids, std::span<const double> states,
-                std::span<const ReachDisc> discs, double tick, const Vec2& gravity, Problems& problems);
+                std::span<const ReachDisc> discs, const Tick& tick, const Vec2& gravity, Problems& problems);
     /// The pieces of the last snapshot, for a picture: body, kind, one_way, half_plane, radius, points (scene
     /// axes, m).
     [[nodiscard]] godot::Array neighborhood() const;
