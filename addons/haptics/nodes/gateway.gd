@@ -230,6 +230,11 @@ func get_faults() -> PackedStringArray:
 	return server().world_get_faults(_world)
 
 
+## Counts how long the scene's part of a physics tick took, s.
+func book_tick(seconds: float) -> void:
+	server().world_book_tick(_world, seconds)
+
+
 ## Figures of the run so far, named as in run.json.
 func get_statistics() -> Dictionary:
 	return server().world_get_statistics(_world)

@@ -110,6 +110,7 @@ func tick(seconds: float) -> PackedStringArray:
 	var scale := 1.0 if _is_lockstep else Engine.time_scale
 	if _stall(scale < _LEAST_TIME_SCALE):
 		return []
+	var began := Time.get_ticks_usec()
 	var problems := _place()
 	native.refresh()
 	state = native.get_state()
@@ -131,6 +132,7 @@ func tick(seconds: float) -> PackedStringArray:
 			_world.neighborhood_overflowed.emit(neighborhood.left_out)
 	# after the snapshot: it tells of bodies that have not felt these yet
 	neighborhood.give(impulses, scale)
+	native.book_tick((Time.get_ticks_usec() - began) * 1e-6)
 	if _is_lockstep:
 		native.advance(seconds)
 		show()

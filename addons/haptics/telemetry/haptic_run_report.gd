@@ -87,6 +87,17 @@ func summary() -> String:
 				)
 			)
 		)
+	var tick: Dictionary = figures.get("tick_us", {})
+	if not tick.is_empty():
+		lines.append(
+			_line(
+				"scene tick",
+				(
+					"%.0f / %.0f / %.0f µs (p50 / p99 / max) on the main thread"
+					% [tick["p50"], tick["p99"], tick["max"]]
+				)
+			)
+		)
 	(
 		lines
 		. append_array(

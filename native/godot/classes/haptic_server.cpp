@@ -304,6 +304,11 @@ PackedStringArray HapticServer::world_get_faults(int64_t world) const {
     return out;
 }
 
+void HapticServer::world_book_tick(int64_t world, double seconds) {
+    if (HapticWorld* w = find(world))
+        w->book_tick(seconds);
+}
+
 Dictionary HapticServer::world_get_statistics(int64_t world) const {
     const HapticWorld* w = find(world);
     return w == nullptr ? Dictionary() : w->statistics();
@@ -446,6 +451,7 @@ void HapticServer::_bind_methods() {
     ClassDB::bind_method(D_METHOD("world_take_events", "world"), &HapticServer::world_take_events);
     ClassDB::bind_method(D_METHOD("world_take_impulses", "world"), &HapticServer::world_take_impulses);
     ClassDB::bind_method(D_METHOD("world_get_faults", "world"), &HapticServer::world_get_faults);
+    ClassDB::bind_method(D_METHOD("world_book_tick", "world", "seconds"), &HapticServer::world_book_tick);
     ClassDB::bind_method(D_METHOD("world_get_statistics", "world"), &HapticServer::world_get_statistics);
     ClassDB::bind_method(D_METHOD("world_aim", "world", "grip"), &HapticServer::world_aim);
     ClassDB::bind_method(D_METHOD("world_hold", "world", "held"), &HapticServer::world_hold);

@@ -203,6 +203,7 @@ void HapticWorld::begin(bool realtime, double record_seconds, Problems& problems
     realtime_ = realtime;
     sequence_ = 0;
     ve_ticks_ = 0;
+    tick_time_.clear();
     ticks_.reset();
     echo_step_ = 0;
     echo_count_ = 0;
@@ -315,6 +316,11 @@ Array HapticWorld::take_events() {
     return out;
 }
 
+void HapticWorld::book_tick(double seconds) {
+    if (seconds >= 0.0 && seconds < 3600.0)
+        tick_time_.add(static_cast<std::int64_t>(seconds * 1e9));
+}
+
 Dictionary HapticWorld::statistics() const {
     Dictionary d;
     if (!running())
@@ -340,6 +346,12 @@ Dictionary HapticWorld::statistics() const {
     // of a lock-step's mean: what simulates the device
     step["simulation"] = device_->simulation_ns();
     d["step_ns"] = step;
+    const HistogramSnapshot ticks = tick_time_.snapshot();
+    Dictionary tick;
+    tick["p50"] = static_cast<double>(ticks.p50_ns()) * 1e-3;
+    tick["p99"] = static_cast<double>(ticks.p99_ns()) * 1e-3;
+    tick["max"] = static_cast<double>(ticks.max_ns) * 1e-3;
+    d["tick_us"] = tick;
     d["scheduling"] = String(scheduling_);
     d["scheduling_details"] = String(scheduling_details_);
     if (realtime_) {

@@ -97,6 +97,7 @@ class HapticServer : public godot::Object {
     godot::Array world_take_events(int64_t world);
     godot::PackedFloat64Array world_take_impulses(int64_t world);
     godot::PackedStringArray world_get_faults(int64_t world) const;
+    void world_book_tick(int64_t world, double seconds);
     godot::Dictionary world_get_statistics(int64_t world) const;
     void world_aim(int64_t world, const godot::PackedFloat64Array& grip);
     void world_hold(int64_t world, bool held);

@@ -6,6 +6,7 @@
 #include <haptics/classes/world_device.hpp>
 #include <haptics/classes/world_settings.hpp>
 #include <haptics/realtime/haptic_runner.hpp>
+#include <haptics/realtime/histogram.hpp>
 #include <haptics/realtime/host_steal.hpp>
 #include <haptics/realtime/tick_clock.hpp>
 
@@ -64,6 +65,8 @@ class HapticWorld {
     /// Impulses that the tool gave since the last call.
     std::vector<GivenImpulse> take_impulses();
     [[nodiscard]] godot::Array take_events();
+    /// The scene's part of a physics tick took so long on the main thread, s.
+    void book_tick(double seconds);
     [[nodiscard]] godot::Dictionary statistics() const;
     /// Stages of the haptic step: stage, runs, and the reason when it is left out.
     [[nodiscard]] godot::Array plan() const;
@@ -119,6 +122,7 @@ class HapticWorld {
     Wrench last_force_{0.0, 0.0, 0.0};
     std::uint64_t sequence_{0};
     std::uint64_t ve_ticks_{0};
+    Histogram tick_time_;
     // beliefs of the report whose impulses were handed out last, and of the one before
     HapticReport given_report_;
     std::uint64_t echo_step_{0};
