@@ -128,6 +128,41 @@ func test_a_rate_out_of_range() -> void:
 	assert_false(_world.is_running())
 
 
+func test_a_collision_speed_of_zero() -> void:
+	_world.collision_speed = 0.0
+	await _run()
+	assert_push_error("World: collision_speed is 0 m/s")
+	assert_false(_world.is_running())
+
+
+func test_a_force_limit_that_is_not_a_number() -> void:
+	_world.safety = HapticSafetyLimits.new()
+	_world.safety.max_force = NAN
+	await _run()
+	assert_push_error("World: max_force is nan N")
+	assert_false(_world.is_running())
+
+
+func test_gravity_that_is_not_a_number() -> void:
+	_world.gravity_source = HapticWorld2D.GravitySource.CUSTOM
+	_world.gravity = Vector2(NAN, 0.0)
+	await _run()
+	assert_push_error("World: gravity is (nan")
+
+
+func test_a_tool_that_is_nowhere() -> void:
+	_tool.position = Vector2(NAN, 0.0)
+	await _run()
+	assert_push_error("Tool: The tool stands at (nan")
+	assert_false(_world.is_running())
+
+
+func test_a_tool_without_area() -> void:
+	(_tool.get_child(0) as CollisionShape2D).shape = SegmentShape2D.new()
+	await _run()
+	assert_push_error("Its shapes have no area")
+
+
 func test_pixels_per_meter_of_zero() -> void:
 	_world.pixels_per_meter = 0.0
 	await _run()

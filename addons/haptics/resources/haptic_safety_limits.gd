@@ -28,8 +28,10 @@ extends Resource
 ## As the native side takes it. The masses that move with handle and tool tell the gate which
 ## changes of force take energy out.
 func to_settings(reference_mass: float, reference_inertia: float) -> Dictionary:
+	var ceiling := HapticSettings.number(HapticSettings.FORCE_CEILING)
 	return {
-		"max_force": minf(max_force, HapticSettings.number(HapticSettings.FORCE_CEILING)),
+		# what is not a number stays it, for the check to see
+		"max_force": ceiling if max_force > ceiling else max_force,
 		"max_torque": max_torque,
 		"force_slew": force_slew,
 		"torque_slew": torque_slew,

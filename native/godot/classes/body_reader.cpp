@@ -227,8 +227,12 @@ BodySpec read_body(const Dictionary& from, const std::string& place, const Surfa
             spec.body.inertia = spec.body.mass * c.spread();
         // an inertia that follows from a wrong mass or shape is no second mistake
         if (!computed || (heavy && has_shape))
-            check.range("inertia", spec.body.inertia, 1e-12, 1e4, "kg m^2",
-                        "Leave it at 0 to have it computed from the shapes.");
+            check.range(
+                "inertia", spec.body.inertia, 1e-12, 1e4, "kg m^2",
+                computed && c.area <= 0.0
+                    ? "Its shapes have no area to compute it from: give it one that encloses something, "
+                      "or an inertia."
+                    : "Leave it at 0 to have it computed from the shapes.");
         problems.add(check.take());
     }
     r.finish();

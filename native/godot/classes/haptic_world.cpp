@@ -49,6 +49,10 @@ void HapticWorld::set_tool(const Dictionary& tool, Problems& problems) {
     const Pose start = r.vec3("start", Vec3::Zero());
     const Twist rates = r.vec3("start_velocity", Vec3::Zero());
     r.finish();
+    if (!start.allFinite())
+        problems.add("The tool stands at (" + std::to_string(start.x()) + ", " + std::to_string(start.y()) +
+                     ") m, turned by " + std::to_string(start.z()) +
+                     " rad, which is no place. Give it a real position and rotation.");
     // what follows from these would only repeat them
     if (!problems.none())
         return;
@@ -105,9 +109,15 @@ void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const doub
     if (!running())
         return;
     const double tick = when.length;
-    if (!std::isfinite(tick) || tick < 1e-3 || tick > 1.0 || !gravity.allFinite()) {
+    if (!std::isfinite(tick) || tick < 1e-3 || tick > 1.0) {
         problems.add("The tick is " + seconds_text(tick) +
-                     "; it must lie between 0.001 and 1 s, and gravity must be finite.");
+                     ", must lie between 0.001 and 1 s. Set the physics ticks per second accordingly.");
+        return;
+    }
+    if (!gravity.allFinite()) {
+        problems.add("gravity is (" + std::to_string(gravity.x()) + ", " + std::to_string(gravity.y()) +
+                     ") m/s^2, which is not a number; the scene is not felt. Give both figures, or set "
+                     "gravity_source to NONE.");
         return;
     }
     Neighborhood& n = runner_->neighborhood();

@@ -210,6 +210,10 @@ WorldSettings read_world_settings(const Dictionary& from, Problems& problems) {
     w.safety = read_safety(r.dictionary("safety"), problems);
     r.finish();
     problems.add(validate(w.session));
+    FigureCheck check;
+    check.range("collision_speed", w.model.collision_speed, 1e-6, 10.0, "m/s",
+                "Slower approaches than this give no collision impulse; 0.005 m/s is the default.");
+    problems.add(check.take());
     return w;
 }
 

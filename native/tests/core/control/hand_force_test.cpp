@@ -58,6 +58,19 @@ SimulatedHandOptions still_hand() {
 } // namespace
 
 TEST_SUITE("hand force") {
+    TEST_CASE(
+        "a door that is pulled by its end turns under the hand: the angle that nobody holds stores nothing") {
+        Model door = linkage_tool(shared::door());
+        door.tool.grip = Grip{0, Vec2(0.1, 0.0), false};
+        HeldTool tool(door, coordinates({0.0}), pushing_hand(Wrench(0.0, -2.0, 0.0), 0.7));
+        tool.session->take(*shared::empty_world());
+        const Mean mean = settle(tool, 4.0);
+        CHECK(std::abs(tool.session->report().grip.z()) > 1.0);
+        CHECK(mean.force.y() == doctest::Approx(2.0).epsilon(0.01));
+        // the hand does 0.4 J of work; the spring of the angle alone would hold a joule
+        CHECK(tool.session->report().energy_injected < 0.01);
+    }
+
     TEST_CASE("a door against a stop: the hand feels its push back in every direction, the stop the lever's "
               "force") {
         for (const double direction : {0.5, 0.3, 0.7}) {
