@@ -33,8 +33,8 @@ experiment1: ## experiment 1 of the paper: CSV, picture and table in build/exper
 experiment2: ## experiment 2 of the paper: CSV, picture and table in build/experiment2
 	@tools/run/experiment2
 
-report: ## the laboratory report: error against run time, stability, plans; build/report/index.html (QUICK=1: coarser; SCENE=res://… [SECONDS=3]: of that scene)
-	@tools/run/report $(if $(filter 1,$(QUICK)),--quick) $(if $(SCENE),--scene="$(SCENE)" $(if $(filter command\ line,$(origin SECONDS)),--seconds="$(SECONDS)"))
+report: ## the laboratory report: error against run time, stability, plans; build/report/index.html (QUICK=1: coarser; KEEP=1: into docs/report; SCENE=res://… [SECONDS=3]: of that scene)
+	@tools/run/report $(if $(filter 1,$(QUICK)),--quick) $(if $(filter 1,$(KEEP)),--keep) $(if $(SCENE),--scene="$(SCENE)" $(if $(filter command\ line,$(origin SECONDS)),--seconds="$(SECONDS)"))
 
 bench: ## the benchmarks (ARGS="--benchmark_filter=…"); JSON in build/bench.json
 	@tools/run/bench $(ARGS)

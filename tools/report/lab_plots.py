@@ -81,10 +81,12 @@ def draw_map(axis, rows, x_name, y_name):
     """Verdicts over two logarithmic axes; the worst where several rows share a place."""
     x = sorted({float(r[x_name]) for r in rows})
     y = sorted({float(r[y_name]) for r in rows})
-    grid = [[0] * len(x) for _ in y]
+    grid = [[float("nan")] * len(x) for _ in y]
     for r in rows:
-        i, k = y.index(float(r[y_name])), x.index(float(r[x_name]))
-        grid[i][k] = max(grid[i][k], VERDICTS.index(r["verdict"]))
+        if r["verdict"]:
+            i, k = y.index(float(r[y_name])), x.index(float(r[x_name]))
+            seen = float(VERDICTS.index(r["verdict"]))
+            grid[i][k] = seen if grid[i][k] != grid[i][k] else max(grid[i][k], seen)
     axis.set_xscale("log")
     axis.pcolormesh(edges(x), range(len(y) + 1), grid, cmap=VERDICT_COLORS, vmin=-0.5, vmax=2.5, edgecolors="white", linewidth=0.3)
     axis.set_yticks([i + 0.5 for i in range(len(y))], [f"{v:g}" for v in y])
@@ -133,24 +135,39 @@ def add_key(figure):
     figure.legend(handles, VERDICTS, loc="outside upper center", ncols=3, frameon=False)
 
 
+def loop_of(row) -> tuple[str, ...]:
+    return (row["rate_hz"], row["delay_steps"], row["encoder_m"], row.get("coulomb_friction_n", "0"))
+
+
+def pad(rows, loops):
+    """Rows for every loop, so that the couplings share an axis: what was not measured stays white."""
+    there = {r["loop"] for r in rows}
+    first = rows[0]
+    return rows + [{**first, "loop": str(i + 1), "verdict": ""} for i in range(len(loops)) if str(i + 1) not in there]
+
+
 def draw_device(rows) -> str:
     couplings = list(dict.fromkeys(r["coupling"] for r in rows))
-    loops = list(dict.fromkeys((r["rate_hz"], r["delay_steps"], r["encoder_m"]) for r in rows))
+    loops = list(dict.fromkeys(loop_of(r) for r in rows))
     figure, axes = plt.subplots(1, len(couplings), figsize=(12, 1.6 + 0.28 * len(loops)), sharey=True, squeeze=False, layout="constrained")
     for axis, coupling in zip(axes[0], couplings):
         own = [
-            {**r, "loop": str(loops.index((r["rate_hz"], r["delay_steps"], r["encoder_m"])) + 1)} for r in rows if r["coupling"] == coupling
+            {**r, "loop": str(loops.index(loop_of(r)) + 1)} for r in rows if r["coupling"] == coupling
         ]
-        draw_map(axis, own, "stiffness_n_per_m", "loop")
+        draw_map(axis, pad(own, loops), "stiffness_n_per_m", "loop")
         if coupling == "direct":
-            for i, (rate, delay, _) in enumerate(loops):
+            for i, (rate, delay, encoder, friction) in enumerate(loops):
                 bound = DEVICE_DAMPING * float(rate) / (0.5 + float(delay))
                 axis.plot([bound, bound], [i, i + 1], color="#212529", lw=1.6)
+                if float(friction) > 0.0:
+                    bound = 2.0 * float(friction) / float(encoder)
+                    axis.plot([bound, bound], [i, i + 1], color="#ae3ec9", lw=1.6)
             axis.plot([], [], color="#212529", lw=1.6, label="Colgate: K (T/2 + delay) = b")
-            axis.legend(fontsize=8, loc="upper right")
+            axis.plot([], [], color="#ae3ec9", lw=1.6, label="encoder and dry friction: K = 2 f / step")
+            axis.legend(fontsize=7, loc="upper right")
         axis.set_title(coupling.replace("_", " "), fontsize=10)
         axis.set_xlabel("stiffness of the wall, N/m")
-    names = [f"{float(r):g} Hz, {d} steps, {1e6 * float(e):g} µm" for r, d, e in loops]
+    names = [f"{float(r):g} Hz, {d} steps, {1e6 * float(e):g} µm" + (f", {float(f):g} N dry" if float(f) > 0.0 else "") for r, d, e, f in loops]
     axes[0][0].set_yticks([i + 0.5 for i in range(len(loops))], names, fontsize=8)
     add_key(figure)
     return encode(figure)

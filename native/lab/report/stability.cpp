@@ -98,17 +98,21 @@ LoopFigures judge_loop(const shared::ObservedToolOptions& o) {
 void write_device(const Options& options) {
     CsvFile csv(options.folder / "stability_device.csv",
                 {"coupling", "rate_hz", "delay_steps", "encoder_m", "device_mass_ratio", "stiffness_n_per_m",
-                 "coupling_stiffness_n_per_m", "handle_swing_m", "force_swing_n", "energy_injected_j",
-                 "fault", "verdict"});
+                 "coulomb_friction_n", "coupling_stiffness_n_per_m", "handle_swing_m", "force_swing_n",
+                 "energy_injected_j", "fault", "verdict"});
     const std::vector<double> rates =
         options.quick ? std::vector<double>{500.0} : std::vector<double>{500.0, 1000.0};
     const std::vector<int> delays = options.quick ? std::vector<int>{1} : std::vector<int>{1, 2, 4};
     const std::vector<double> encoders =
-        options.quick ? std::vector<double>{1e-6} : std::vector<double>{1e-6, 1e-5};
+        options.quick ? std::vector<double>{1e-6} : std::vector<double>{1e-6, 1e-5, 5e-5};
     const std::vector<double> ratios =
         options.quick ? std::vector<double>{1.0} : std::vector<double>{0.75, 1.0, 1.25};
     const std::vector<double> walls = stiffnesses(options.quick ? 1 : 2);
-    const double total = 3.0 * static_cast<double>(rates.size() * delays.size() * encoders.size() *
+    // dry friction matters where the wall itself is rendered at the encoder's steps
+    const auto frictions = [](Coupling coupling) {
+        return coupling == Coupling::direct ? std::vector<double>{0.0, 0.2} : std::vector<double>{0.0};
+    };
+    const double total = 4.0 * static_cast<double>(rates.size() * delays.size() * encoders.size() *
                                                    ratios.size() * walls.size());
     double done = 0.0;
     for (const Coupling coupling : {Coupling::direct, Coupling::virtual_coupling, Coupling::four_channel})
@@ -116,20 +120,23 @@ void write_device(const Options& options) {
             for (const int delay : delays)
                 for (const double encoder : encoders)
                     for (const double ratio : ratios)
-                        for (const double wall : walls) {
-                            shared::ObservedToolOptions o;
-                            o.coupling = coupling;
-                            o.rate_hz = rate;
-                            o.delay_steps = delay;
-                            o.encoder = encoder;
-                            o.mass_ratio = ratio;
-                            o.wall = wall;
-                            o.observer = coupling != Coupling::direct;
-                            const LoopFigures f = judge_loop(o);
-                            csv.row({coupling_name(coupling), rate, delay, encoder, ratio, wall, f.coupling,
-                                     f.swing, f.force_swing, f.energy, f.fault, sweep::name_of(f.verdict())});
-                            show_progress("stability, device in the loop", ++done / total);
-                        }
+                        for (const double friction : frictions(coupling))
+                            for (const double wall : walls) {
+                                shared::ObservedToolOptions o;
+                                o.coupling = coupling;
+                                o.rate_hz = rate;
+                                o.delay_steps = delay;
+                                o.encoder = encoder;
+                                o.coulomb = friction;
+                                o.mass_ratio = ratio;
+                                o.wall = wall;
+                                o.observer = coupling != Coupling::direct;
+                                const LoopFigures f = judge_loop(o);
+                                csv.row({coupling_name(coupling), rate, delay, encoder, ratio, wall, friction,
+                                         f.coupling, f.swing, f.force_swing, f.energy, f.fault,
+                                         sweep::name_of(f.verdict())});
+                                show_progress("stability, device in the loop", ++done / total);
+                            }
     csv.finish();
 }
 

@@ -43,6 +43,8 @@ struct ObservedToolOptions {
     Integrator integrator{Integrator::linearly_implicit};
     double encoder{10e-6};
     int delay_steps{1};
+    /// Dry friction of the device, N.
+    double coulomb{0.0};
     bool observer{true};
     bool passivity{false};
     double noise{0.05};
@@ -61,6 +63,7 @@ struct ObservedTool {
         d.mass = 0.3;
         d.inertia = 3e-4;
         d.viscous_friction = 1.0;
+        d.coulomb_friction = o.coulomb;
         d.encoder_model = o.encoder > 0.0 ? EncoderModel::handle : EncoderModel::exact;
         d.encoder_resolution = Vec3(o.encoder, o.encoder, 10.0 * o.encoder);
         d.command_delay_steps = o.delay_steps;
