@@ -84,7 +84,8 @@ double Session::stored_energy() const {
         stretch.z() = 0.0; // the angle is free
     // what moves the hidden part of the device's inertia comes from the controller, and back to it
     return output_.stored_energy - 0.5 * grasp_ * handle_velocity_.dot(hidden_mass_ * handle_velocity_) +
-           share_ * grasp_ * spring_energy(gains_.stiffness, stretch, Wrench(force, force, gate_.limits().max_torque));
+           share_ * grasp_ *
+               spring_energy(gains_.stiffness, stretch, Wrench(force, force, gate_.limits().max_torque));
 }
 
 // What moves the handle's end of the coupling and is not the hand: all of it but the hand's share, and the
