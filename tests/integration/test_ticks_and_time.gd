@@ -44,6 +44,8 @@ func _push(ticks: int, wall: Node2D) -> Vector2:
 	Engine.physics_ticks_per_second = ticks * _HURRY
 	Engine.max_physics_steps_per_frame = 64
 	Engine.time_scale = _HURRY
+	# the ticks that are left of this frame still have the length that was set before
+	await wait_process_frames(2)
 	var world := Scene.make_world()
 	world.record_seconds = 4.0
 	(world.device as HapticSimulatedPantograph).hand = _lean()
