@@ -94,7 +94,7 @@ def stability_part(folder: Path, pictures: dict[str, str]) -> str:
             "<p>With the device in the loop (0.3 kg, 1 N s/m, a hand that pushes with 2 N): stable when the handle swings by less than 50 µm, "
             "unstable from 5 mm or a fault on. Two bounds are drawn over direct rendering. Colgate's: the device's own damping b pays for half a step and the delay. And K = 2 f / step, with the dry "
             "friction f of the device and the step of its encoder: left of either, rest on the wall is kept (Diolaiti and others, 2006); left of both it is passive (Abbott and Okamura, 2005, who "
-            "count no delay). Without dry friction the second is 0, and what is left is a swing of about an encoder step.</p>"
+            "count no delay). The tool of the map arrives in motion, where dry friction does not help: there Colgate's counts. Without dry friction the second is 0, and what is left is a swing of about an encoder step.</p>"
         )
         parts += [picture(pictures[name], "stability with the device in the loop") for name in pictures if name == "stability_device"]
         parts.append(table(stiffest_walls(device), WALL_COLUMNS))
