@@ -158,7 +158,7 @@ func test_a_tool_that_is_nowhere() -> void:
 
 
 func test_a_tool_without_area() -> void:
-	(_tool.get_child(0) as CollisionShape2D).shape = SegmentShape2D.new()
+	(_tool.get_child(0) as CollisionShape2D).shape = WorldBoundaryShape2D.new()
 	await _run()
 	assert_push_error("Its shapes have no area")
 
