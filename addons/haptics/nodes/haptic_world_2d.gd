@@ -358,8 +358,7 @@ func is_held() -> bool:
 	return is_running() and _session.state[Gateway.State.HELD] > 0.0
 
 
-## Force on the hand, N, in the canvas's axes, as the scene has it: the device gives [member
-## mapping_scale] times that.
+## Force on the hand, N, canvas's axes, in the scene; the device gives mapping_scale times that.
 func get_force() -> Vector2:
 	return _vector(Gateway.State.FORCE_X)
 
