@@ -29,7 +29,7 @@ TEST_CASE(
                         CAPTURE(late);
                         CAPTURE(phase);
                         CAPTURE(damping);
-                        Case c{drift, frames, reading, phase};
+                        LateFrameCase c{drift, frames, reading, phase};
                         c.damping = damping;
                         const Seen seen = compare(c);
                         CHECK(seen.ratio < 1.0);
@@ -46,7 +46,7 @@ TEST_CASE("after a long block a rough body that stopped is slipped on once more,
         for (const Reading reading : {Reading::last, Reading::each}) {
             const std::string motion = drift.name;
             CAPTURE(motion);
-            Case c{drift, k_frames[2], reading};
+            LateFrameCase c{drift, k_frames[2], reading};
             c.dynamic = 0.75;
             const Seen seen = compare(c);
             const double drop = (1.0 - c.dynamic) * drift.friction * seen.largest_true;

@@ -13,7 +13,7 @@
 
 namespace haptics::frames {
 
-constexpr double k_step = 0.001;
+constexpr double k_frame_step = 0.001;
 constexpr double k_tick = 1.0 / 60.0;
 /// Godot runs no more ticks than that in a frame; what is due beyond them is lost.
 constexpr int k_most_ticks = 8;
@@ -53,7 +53,7 @@ constexpr Frames k_frames[] = {{"20 a second", 20.0, 0.0}, {"50 ms", 60.0, 0.05}
 /// Which snapshots of several in a frame the loop gets to see.
 enum class Reading { last, each };
 
-struct Case {
+struct LateFrameCase {
     Drift drift;
     Frames frames;
     Reading reading{Reading::last};
@@ -67,7 +67,7 @@ struct Case {
 
 class FrameWorld {
   public:
-    FrameWorld(const Case& c, bool disturbed)
+    FrameWorld(const LateFrameCase& c, bool disturbed)
         : case_(c)
         , disturbed_(disturbed)
         , model_(shared::box_tool())
@@ -95,7 +95,7 @@ class FrameWorld {
             waiting_ = case_.reading == Reading::last ? made_.size() - 1 : waiting_;
             take(made_[waiting_++]);
         }
-        haptics::step(model_, *data_, hand_, k_step, out_);
+        haptics::step(model_, *data_, hand_, k_frame_step, out_);
         return out_.contact.head<2>();
     }
 
@@ -143,7 +143,7 @@ class FrameWorld {
         take_neighborhood(*next_, *data_);
     }
 
-    Case case_;
+    LateFrameCase case_;
     bool disturbed_;
     Model model_;
     std::unique_ptr<Data> data_;
@@ -173,14 +173,14 @@ struct Seen {
     double smallest_true{1e9};
 };
 
-inline Seen compare(const Case& c) {
+inline Seen compare(const LateFrameCase& c) {
     FrameWorld late(c, true);
     FrameWorld truth(c, false);
     Seen seen;
     Vec2 last = Vec2::Zero();
     Vec2 last_true = Vec2::Zero();
     constexpr int k_settled = 1000;
-    const int steps = static_cast<int>((k_begin + c.frames.block + 0.8) / k_step);
+    const int steps = static_cast<int>((k_begin + c.frames.block + 0.8) / k_frame_step);
     std::vector<Vec2> forces;
     double most = 0.0;
     for (int i = 0; i < steps; ++i) {
@@ -203,7 +203,7 @@ inline Seen compare(const Case& c) {
         const double ratio = excess / std::max(0.07 * last.norm(), 0.05);
         if (ratio > seen.ratio) {
             seen.ratio = ratio;
-            seen.when = i * k_step;
+            seen.when = i * k_frame_step;
         }
         seen.excess = std::max(seen.excess, excess);
     }

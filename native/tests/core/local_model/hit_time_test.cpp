@@ -12,7 +12,7 @@ using namespace haptics;
 
 namespace {
 
-constexpr double k_step = 0.002;
+constexpr double k_coarse_step = 0.002;
 
 struct Bounce {
     bool hit{false};
@@ -34,7 +34,7 @@ Bounce fall(Integrator integrator, const Surface& surface, double gravity, doubl
     Bounce bounce;
     StepOutput out;
     for (int i = 0; i < 60; ++i) {
-        step(model, *data, HandInput{}, k_step, out);
+        step(model, *data, HandInput{}, k_coarse_step, out);
         bounce.hit = bounce.hit || out.colliding > 0;
         const double above = data->pose.y() - 0.01;
         const double up = data->velocity.y();
@@ -62,7 +62,8 @@ TEST_CASE(
                     Surface surface = shared::paper_surface();
                     surface.stiffness = stiffness;
                     surface.restitution = restitution;
-                    const Bounce b = fall(integrator, surface, 9.81, 0.004 + 0.4 * k_step * phase / 60.0);
+                    const Bounce b =
+                        fall(integrator, surface, 9.81, 0.004 + 0.4 * k_coarse_step * phase / 60.0);
                     CHECK(b.hit);
                     worst = std::max(worst, std::abs(b.ratio - restitution));
                 }
