@@ -5,6 +5,9 @@ extends RefCounted
 ## Angles of the native side are y up: a joint that turns clockwise by q here has the coordinate -q
 ## there. Distances along a link's x axis are the same.
 
+## Group of all linkages.
+const LINKAGES := &"haptic_linkages"
+
 const ShapeReader := preload("shape_reader.gd")
 const ToolReader := preload("tool_reader.gd")
 

@@ -37,6 +37,8 @@ var _wait := 0
 
 
 func _notification(what: int) -> void:
+	if what == NOTIFICATION_ENTER_TREE:
+		add_to_group(LinkageReader.LINKAGES)
 	if what == NOTIFICATION_EXIT_TREE:
 		stop_free()
 	if _free != null and (what == NOTIFICATION_PAUSED or what == NOTIFICATION_UNPAUSED):
@@ -59,6 +61,11 @@ func _physics_process(delta: float) -> void:
 
 
 func _process(_delta: float) -> void:
+	_show_free()
+
+
+# where the loop has it now, when nobody holds it
+func _show_free() -> void:
 	if _free != null and _free.is_current_run():
 		_free.show()
 

@@ -136,6 +136,8 @@ func tick(seconds: float) -> PackedStringArray:
 	if _is_lockstep:
 		native.advance(seconds)
 		show()
+		# what runs beside the tool has moved as well, however many ticks a frame brings
+		_world.get_tree().call_group(LinkageReader.LINKAGES, "_show_free")
 	return problems
 
 
