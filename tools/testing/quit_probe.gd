@@ -9,11 +9,15 @@ extends SceneTree
 const Scene := preload("res://tests/support/haptic_scene.gd")
 const Threads := preload("res://tests/support/loop_threads.gd")
 
+# when a run that feels nothing says why, for the log
+const _PATIENCE_MS := 30000
+
 var _world: HapticWorld2D
 var _native: HapticWorld2D.Gateway
 var _way := "process"
 var _is_pushing := false
 var _is_ending := false
+var _has_complained := false
 
 
 func _initialize() -> void:
@@ -35,6 +39,9 @@ func _physics_process(_delta: float) -> bool:
 	if not _is_pushing and _world.is_running() and _world.get_force().length() > 1.0:
 		_is_pushing = true
 		print("pushing")
+	if not _is_pushing and not _has_complained and Time.get_ticks_msec() > _PATIENCE_MS:
+		_has_complained = true
+		print("nothing is felt: running %s, faults %s" % [_world.is_running(), _world.get_faults()])
 	if _is_pushing and _way == "physics" and not _is_ending:
 		_is_ending = true
 		quit()
