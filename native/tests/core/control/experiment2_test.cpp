@@ -153,12 +153,16 @@ TEST_SUITE("experiment 2") {
             double wall_1 = 0.0;
             double wall_2 = 0.0;
             int object_3 = 0;
+            double thrown = 0.0;
             double largest = 0.0;
             const Experiment2Outcome r =
                 run_experiment2(o, [&](const HapticReport& now, const Pose&, double) {
                     wall_1 = std::max(wall_1, force_of(now, 0, 100));
                     wall_2 = std::max(wall_2, force_of(now, 1, 100));
                     object_3 += hits(now, 2, 200);
+                    for (int i = 0; i < now.movable_count; ++i)
+                        thrown = std::max(thrown,
+                                          now.movable[static_cast<std::size_t>(i)].velocity.head<2>().norm());
                     largest = std::max(largest, now.force.head<2>().norm());
                 });
             CHECK(r.faults == Fault::none);
@@ -166,6 +170,7 @@ TEST_SUITE("experiment 2") {
             CHECK(wall_2 > 1.0);
             // thrown away by impulses, not pushed
             CHECK(object_3 > 0);
+            CHECK(thrown > 0.1);
             CHECK(largest <= 40.0 + 1e-9);
             CHECK(r.peak < 1e-3);
         }
