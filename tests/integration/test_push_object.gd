@@ -3,6 +3,17 @@ extends GutTest
 
 const Scene := preload("res://tests/support/haptic_scene.gd")
 
+
+# spins a body at `rate` (rad/s) in each physics tick
+class Spinner:
+	extends Node
+	var body: RigidBody2D
+	var rate := 0.0
+
+	func _physics_process(_delta: float) -> void:
+		body.angular_velocity = rate
+
+
 var _world: HapticWorld2D
 var _tool: HapticTool2D
 var _object: HapticObject2D
@@ -129,3 +140,22 @@ func test_what_happens_is_told() -> void:
 	assert_same(contact.body, wall)
 	assert_almost_eq(contact.normal, Vector2(-1, 0), Vector2(0.01, 0.01))
 	assert_almost_eq(contact.position.x, 70.0, 2.0)
+
+
+func test_a_body_whose_motion_is_no_number_is_left_out_by_name() -> void:
+	_world = Scene.make_world()
+	_tool = Scene.make_tool(Vector2.ZERO, Vector2(80, 80))
+	_object = Scene.make_object(Vector2(90, 0), Vector2(80, 80), 0.5)
+	# no number while the world looks, and none left for the engine
+	for rate: float in [NAN, 0.0]:
+		var spinner := Spinner.new()
+		spinner.body = _object
+		spinner.rate = rate
+		spinner.process_physics_priority = -1000 if is_nan(rate) else 1000000
+		_object.add_child(spinner)
+	add_child_autofree(Scene.gather([_world, _tool, _object]))
+	await wait_physics_frames(20)
+	assert_push_error("/Object was left out: its pose is (0.0")
+	assert_push_error_count(1)
+	assert_true(_world.is_running())
+	assert_eq(_world.get_faults(), PackedStringArray())

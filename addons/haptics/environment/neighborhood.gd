@@ -76,11 +76,10 @@ func publish(
 				states[i] *= time_scale
 	near_count = ids.size()
 	problems.append_array(_finder.take_problems())
-	problems.append_array(
-		_native.submit(
-			ids, states, clampf(tick_seconds / time_scale, 0.001, 1.0), gravity, _to_meters(discs)
-		)
-	)
+	for text: String in _native.submit(
+		ids, states, clampf(tick_seconds / time_scale, 0.001, 1.0), gravity, _to_meters(discs)
+	):
+		problems.append(_named(text))
 	left_out = _native.get_left_out()
 	return problems
 
@@ -150,6 +149,15 @@ func _to_meters(around: Array[Vector3]) -> PackedFloat64Array:
 		flat.append_array(_units.point_to_meters(Vector2(disc.x, disc.y)))
 		flat.append(_units.to_meters(disc.z))
 	return flat
+
+
+# the native side knows bodies by their number
+func _named(text: String) -> String:
+	var number := text.get_slice(" ", 1)
+	var body := body_of(number.to_int()) if text.begins_with("Body ") else null
+	if body == null or not body.is_inside_tree():
+		return text
+	return str(body.get_path()) + text.trim_prefix("Body " + number)
 
 
 func _describe(reader: BodyReader, problems: PackedStringArray) -> void:

@@ -115,7 +115,8 @@ void Session::locate_handle() {
 Fault Session::device_faults() const {
     // half a step of slack: the sum of many steps is not exact
     const bool silent = silent_for_ > settings_.device_patience + 0.5 * settings_.step;
-    return reading_.faults | care_.fault() | (silent ? Fault::reconnect_the_device : Fault::none);
+    return reading_.faults | care_.fault() | (silent ? Fault::reconnect_the_device : Fault::none) |
+           (output_.diverged ? Fault::make_the_scene_milder : Fault::none);
 }
 
 void Session::hold(bool held) {

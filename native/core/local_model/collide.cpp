@@ -5,6 +5,12 @@
 // without having been in contact (a fast motion met the spring first). All other points that touch take part
 // with restitution 0, whatever their motion: the impulse of a neighbor may close a contact that rests or
 // opens. The restitution of a hit slower than the collision speed is 0 as well.
+//
+// A wall that moves goes on at its speed w whatever it hits. Where it presses on a link next to its joint,
+// with a lever d, the rigid answer is a rate w / d, without bound. Joints never make a link easier to move
+// than it is free, so yield J D^-1 J' compared with 1 / mass of the link tells how short the lever is (3 d^2
+// / l^2 for a rod of length l about its end). Below k_short_lever such a contact counts as one that cannot be
+// moved: its spring presses on the joint instead.
 
 #include <algorithm>
 #include <array>
@@ -21,8 +27,29 @@ constexpr double k_closed = 1e-6;
 // resolved above the surface, and the contact count as open right after
 constexpr double k_reached = 1e-9;
 
+// of what the link would yield without joints: a lever below 0.6 % of a rod
+constexpr double k_short_lever = 1e-4;
+
 double rate(const ContactSystem& s, int point) {
     return s.normal_rows.row(point).dot(s.velocity) - s.point[static_cast<std::size_t>(point)].drive;
+}
+
+// A wall that moves presses on a link of the tool so near to a joint that no impulse can make it give way.
+bool presses_on_joint(const Model& model, const Data& data, int point) {
+    const ContactSystem& s = data.system;
+    const PointRow& p = s.point[static_cast<std::size_t>(point)];
+    const PatchRow& t = s.row[static_cast<std::size_t>(p.patch)];
+    if (!model.tool.articulated || p.drive == 0.0 || t.patch < 0)
+        return false;
+    const std::int32_t touched = data.patches.patch[static_cast<std::size_t>(t.patch)].body_a;
+    if (touched >= data.tool.body_count)
+        return false;
+    const LinkageModel& linkage = model.tool.linkage;
+    const int slot = linkage.link[touched].slot;
+    const FreedomVector row = s.normal_rows.row(point).transpose();
+    FreedomVector change(s.freedoms);
+    change.noalias() = s.inverse_mass * row;
+    return row.dot(change) * linkage.body[slot].mass < k_short_lever;
 }
 
 } // namespace
@@ -80,7 +107,10 @@ bool collide(const Model& model, Data& data, StepOutput& output) {
         const int i = chosen[static_cast<std::size_t>(c)];
         const PointRow& p = s.point[static_cast<std::size_t>(i)];
         const PatchRow& t = s.row[static_cast<std::size_t>(p.patch)];
-        problem.normal_rows.row(c) = s.normal_rows.row(i);
+        if (presses_on_joint(model, data, i))
+            problem.normal_rows.row(c).setZero();
+        else
+            problem.normal_rows.row(c) = s.normal_rows.row(i);
         problem.tangent_rows.row(c) = s.tangent_rows.row(p.patch);
         problem.wall_normal_velocity(c) = p.drive;
         problem.wall_tangent_velocity(c) = t.drive;
@@ -93,8 +123,12 @@ bool collide(const Model& model, Data& data, StepOutput& output) {
 
     const int n = s.tool_freedoms;
     s.velocity = data.solution.velocity;
-    if (model.tool.articulated)
+    if (model.tool.articulated) {
         s.jump += s.velocity.head(n) - problem.velocity.head(n);
+        // what a wall or a movable hits the linkage with is its to keep (proxy.cpp)
+        const FreedomVector sum = problem.velocity + s.velocity;
+        s.force_work += 0.5 * data.solution.momentum_change.head(n).dot(sum.head(n));
+    }
     output.grip_velocity_jump += s.grip * (s.velocity.head(n) - problem.velocity.head(n));
     const Vec2 grip = grip_pose(data.grip, data.pose).head<2>();
     std::array<double, k_max_points> normal_impulse{};

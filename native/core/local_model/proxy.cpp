@@ -12,9 +12,9 @@
 //
 // Energy. Explicit Coriolis terms create energy once a link turns by some tenths of a radian in a step, and a
 // whip then explodes. So the kinetic energy has a budget: what it was, plus the work of all other forces
-// (which at the end velocity is never less than what the motion gains for a constant D). What is beyond the
-// budget is taken off the velocity; the budget follows the energy down to within k_slack above it. The
-// paper's preset, without Coriolis terms, has no such bound: there energy wanders by design.
+// (which at the end velocity is never less than what the motion gains for a constant D) and of impulses. What
+// is beyond the budget is taken off the velocity; the budget follows the energy down to within k_slack above
+// it. The paper's preset, without Coriolis terms, has no such bound: there energy wanders by design.
 //
 // D and J of a step are those of its start. So a linkage's coordinates wait in `displacement` until the step
 // ends, and all that follows from them stays as it was when D was factorized.
@@ -27,6 +27,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "internal.hpp"
 #include "rigid_grip.hpp"
@@ -47,6 +48,7 @@ constexpr double k_slack = 1.05;
 
 // kinetic energy of a step that overflowed, J
 constexpr double k_absurd = 1e12;
+constexpr double k_unbounded = std::numeric_limits<double>::infinity();
 
 std::size_t index(int i) {
     return static_cast<std::size_t>(i);
@@ -137,6 +139,9 @@ void end_tool_step(const Model& model, Data& data) {
     } else {
         data.linkage.position = s.start_position;
         data.linkage.velocity = s.start_velocity;
+        place_tool(model, data);
+        if (!(kinetic_energy(model.tool.linkage, data.linkage) < k_absurd))
+            data.energy_budget = k_unbounded; // it was absurd before: divergence.cpp
     }
     data.half_step.setZero();
     place_tool(model, data);

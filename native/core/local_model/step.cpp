@@ -55,6 +55,26 @@ void advance(const Model& model, Data& data, const HandInput& hand, double dt, S
         local::integrate(model, data, hand, left, 0.0, left / dt, output);
 }
 
+void make_step(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output) {
+    local::begin_tool_step(model, data);
+    find_contacts(model, data, dt);
+    const bool exact = model.settings.integrator == Integrator::exact;
+    if (data.patches.count == 0 && !exact && !data.plan.runs(Stage::free_system)) {
+        local::step_freely(model, data, hand, dt, output);
+        local::finish(model, data, output);
+        return;
+    }
+    local::assemble(model, data, dt);
+
+    output.grip_mobility = local::mobility(model, data);
+
+    if (exact)
+        local::step_exactly(model, data, hand, dt, output);
+    else
+        advance(model, data, hand, dt, output);
+    local::finish(model, data, output);
+}
+
 } // namespace
 
 void reset(const Model& model, Data& data, const LinkageVector& configuration) {
@@ -105,24 +125,9 @@ void step_direct(const Model& model, Data& data, const Pose& pose, const Twist& 
 
 void step(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output) {
     output.clear();
-    local::begin_tool_step(model, data);
-    find_contacts(model, data, dt);
-    const bool exact = model.settings.integrator == Integrator::exact;
-    if (data.patches.count == 0 && !exact && !data.plan.runs(Stage::free_system)) {
-        local::step_freely(model, data, hand, dt, output);
-        local::finish(model, data, output);
-        ++data.step;
-        return;
-    }
-    local::assemble(model, data, dt);
-
-    output.grip_mobility = local::mobility(model, data);
-
-    if (exact)
-        local::step_exactly(model, data, hand, dt, output);
-    else
-        advance(model, data, hand, dt, output);
-    local::finish(model, data, output);
+    const LinkageVector start = local::tool_configuration(model, data);
+    make_step(model, data, hand, dt, output);
+    local::put_back_what_diverged(model, data, start, output);
     ++data.step;
 }
 

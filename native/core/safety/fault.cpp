@@ -24,6 +24,8 @@ const char* describe_fault(int bit) {
         "rate, "
         "then re-arm.",
         "The device reports a fault of its own (motor driver or heat). Let it recover, then re-arm.",
+        "The model of the scene became unstable, and the tool was put back at rest. Make extreme figures "
+        "milder (light bodies, stiff surfaces, shapes inside of each other), then re-arm.",
     };
     return bit >= 0 && bit < k_fault_count ? k_text[static_cast<std::size_t>(bit)] : "";
 }

@@ -47,17 +47,17 @@ const BodySpec* BodyRegistry::find(std::int64_t id) const {
     return found == bodies_.end() ? nullptr : &found->second;
 }
 
-std::vector<std::int64_t> BodyRegistry::build(std::span<const std::int64_t> ids,
-                                              std::span<const double> states,
-                                              std::span<const ReachDisc> discs, Neighborhood& out) {
-    std::vector<std::int64_t> unknown;
+std::vector<std::size_t> BodyRegistry::build(std::span<const std::int64_t> ids,
+                                             std::span<const double> states, std::span<const ReachDisc> discs,
+                                             Neighborhood& out) {
+    std::vector<std::size_t> unusable;
     std::vector<Candidate> candidates;
     candidates.reserve(ids.size());
     for (std::size_t i = 0; i < ids.size(); ++i) {
         const BodySpec* spec = find(ids[i]);
         const double* s = states.data() + i * k_state;
         if (spec == nullptr || !std::all_of(s, s + k_state, [](double v) { return std::isfinite(v); })) {
-            unknown.push_back(ids[i]);
+            unusable.push_back(i);
             continue;
         }
         Candidate c{spec->body, spec->pieces, spec->bounds};
@@ -68,7 +68,7 @@ std::vector<std::int64_t> BodyRegistry::build(std::span<const std::int64_t> ids,
     left_out_ = select_near(candidates, discs, out.bodies);
     out.overflow = left_out_.pieces;
     join_fixed(out.bodies);
-    return unknown;
+    return unusable;
 }
 
 // Walls that abut are one solid: what lies inside it must not be felt.

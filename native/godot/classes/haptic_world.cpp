@@ -14,6 +14,14 @@ std::string seconds_text(double s) {
     return std::to_string(s) + " s";
 }
 
+std::string state_text(std::span<const double> s) {
+    const auto three = [s](std::size_t i) {
+        return "(" + std::to_string(s[i]) + ", " + std::to_string(s[i + 1]) + ", " +
+               std::to_string(s[i + 2]) + ")";
+    };
+    return "its pose is " + three(0) + " m, m, rad and its velocity " + three(3) + " m/s, m/s, rad/s";
+}
+
 } // namespace
 
 void HapticWorld::configure(const Dictionary& settings, Problems& problems) {
@@ -121,11 +129,14 @@ void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const doub
         return;
     }
     Neighborhood& n = runner_->neighborhood();
-    for (const std::int64_t id : bodies_.build(ids, states, discs, n))
-        if (!complained_[id]) {
-            complained_[id] = true;
-            problems.add("Body " + std::to_string(id) +
-                         " was left out: it is not registered, or its pose or velocity is not a number.");
+    for (const std::size_t i : bodies_.build(ids, states, discs, n))
+        if (!complained_[ids[i]]) {
+            complained_[ids[i]] = true;
+            problems.add("Body " + std::to_string(ids[i]) + " was left out: " +
+                         (bodies_.find(ids[i]) == nullptr
+                              ? "it is not registered."
+                              : state_text(states.subspan(i * BodyRegistry::k_state, BodyRegistry::k_state)) +
+                                    ", which is not a number. Give it a real position and velocity."));
         }
     n.sequence = ++sequence_;
     const auto most = static_cast<int>(std::clamp<std::int64_t>(when.most, 1, 1000));

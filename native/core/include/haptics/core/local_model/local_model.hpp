@@ -94,6 +94,9 @@ struct StepFigures {
     /// The exact integrator did not apply to the whole step, and the linearly implicit one did the rest
     /// (`fell_back` is set too).
     bool exact_gave_way{false};
+    /// The state left all bounds (beyond 1000 km, faster than 1000 km/s, not a number) and was put back to
+    /// the start of the step, at rest; all other figures are zero.
+    bool diverged{false};
 };
 
 struct StepOutput : StepFigures {

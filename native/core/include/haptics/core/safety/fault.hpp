@@ -34,6 +34,8 @@ enum class Fault : std::uint32_t {
     give_the_loop_more_time = 1U << 11U,
     /// The device reports a fault of its own: a motor driver gave up, or it is too warm.
     let_the_device_recover = 1U << 12U,
+    /// The model of the scene ran away (StepOutput::diverged).
+    make_the_scene_milder = 1U << 13U,
 };
 
 /// Union of causes.
@@ -50,7 +52,7 @@ constexpr bool has(Fault set, Fault bits) {
 }
 
 /// Number of fault bits.
-inline constexpr int k_fault_count = 13;
+inline constexpr int k_fault_count = 14;
 /// Cause and remedy of one bit (0 to k_fault_count - 1) as a sentence; static storage. Empty for any other
 /// bit.
 const char* describe_fault(int bit);

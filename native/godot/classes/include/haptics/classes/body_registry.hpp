@@ -51,9 +51,10 @@ class BodyRegistry {
     static constexpr std::size_t k_state = 6;
 
     /// Fills the bodies of a snapshot from ids and states with what lies within the discs (all of it without
-    /// discs); what does not fit is counted in `overflow`, unknown ids are returned.
-    std::vector<std::int64_t> build(std::span<const std::int64_t> ids, std::span<const double> states,
-                                    std::span<const ReachDisc> discs, Neighborhood& out);
+    /// discs); what does not fit is counted in `overflow`. Returns the places in `ids` of bodies that are
+    /// left out because they are unknown or their state is not a number.
+    std::vector<std::size_t> build(std::span<const std::int64_t> ids, std::span<const double> states,
+                                   std::span<const ReachDisc> discs, Neighborhood& out);
 
   private:
     void join_fixed(BodySet& set);
