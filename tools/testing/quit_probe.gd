@@ -23,7 +23,8 @@ var _has_complained := false
 func _initialize() -> void:
 	if not OS.get_cmdline_user_args().is_empty():
 		_way = OS.get_cmdline_user_args()[0]
-	_world = Scene.make_world(Vector2(0, 2), 0.15)
+	_world = Scene.make_world()
+	(_world.device as HapticSimulatedPantograph).hand = Scene.make_path(_presses())
 	_world.mode = HapticWorld2D.Mode.REALTIME
 	_world.safety = HapticSafetyLimits.new()
 	_world.safety.ramp_time = 0.05
@@ -57,6 +58,23 @@ func _process(_delta: float) -> bool:
 		# the loop ends by itself when this returns true
 		return _way == "process"
 	return false
+
+
+# The hand leans on the wall and lets go, again and again: where the first press comes before the loop of
+# a busy machine is armed, which it is only in free space, a later one is felt.
+func _presses() -> Array[PackedFloat64Array]:
+	var rows: Array[PackedFloat64Array] = []
+	for t: int in range(0, 120, 2):
+		rows.append_array(
+			[
+				PackedFloat64Array([t, 0.0, 0.0, 0.0]),
+				PackedFloat64Array([t + 0.15, 0.0, 0.0, 0.0]),
+				PackedFloat64Array([t + 0.3, 0.0, 0.006, 0.0]),
+				PackedFloat64Array([t + 1.0, 0.0, 0.006, 0.0]),
+				PackedFloat64Array([t + 1.2, 0.0, 0.0, 0.0]),
+			]
+		)
+	return rows
 
 
 func _tell() -> void:
