@@ -7,7 +7,10 @@ const _GOOD := Color(0.42, 0.86, 0.72)
 # as HapticForceArrows2D draws them
 const _CONTACT := Color(1.0, 0.62, 0.36)
 const _HAND := Color(0.42, 0.86, 0.72)
+const _SHADE := Color(0.07, 0.075, 0.09, 0.9)
 const _BAD := Color(1.0, 0.5, 0.42)
+# a force that is off for shorter needs no explanation, s
+const _PATIENCE := 1.0
 # how often the figures change, s: slower than that they can be read
 const _PERIOD := 0.1
 
@@ -26,6 +29,8 @@ var _fault_label: Label
 var _largest := 0.0
 var _deepest := 0.0
 var _wait := 0.0
+# how long the force has been off without a fault, s
+var _off := 0.0
 
 
 func _ready() -> void:
@@ -89,7 +94,11 @@ func _show_output(figures: Dictionary) -> void:
 		text = "stopped"
 		color = _BAD
 	_put("Output", text, color)
-	_fault_label.text = "\n".join(faults)
+	var missing: String = figures.get("force_waits_for", "")
+	_off = 0.0 if missing.is_empty() else _off + _PERIOD
+	var explains := _off > _PATIENCE
+	_fault_label.text = "No force yet. " + missing if explains else "\n".join(faults)
+	_fault_label.add_theme_color_override("font_color", _TEXT if explains else _BAD)
 
 
 func _put(key: String, text: String, color: Color = _TEXT) -> void:
@@ -112,6 +121,13 @@ func _build() -> void:
 	for key: String in ["Force", "Penetration", "Contact", "Loop", "Scheduling", "Output"]:
 		var wide := key in ["Contact", "Loop", "Scheduling"]
 		bar.add_child(_column(key, 160.0 if wide else 104.0))
+	# a scene's walls may be as light as the words
+	var shade := ColorRect.new()
+	shade.color = _SHADE
+	shade.mouse_filter = Control.MOUSE_FILTER_IGNORE
+	shade.set_anchors_and_offsets_preset(Control.PRESET_BOTTOM_WIDE)
+	shade.offset_top = -44.0
+	add_child(shade)
 	_help_label = _label(help, 14, _QUIET)
 	_help_label.horizontal_alignment = HORIZONTAL_ALIGNMENT_RIGHT
 	_help_label.set_anchors_and_offsets_preset(Control.PRESET_BOTTOM_WIDE)

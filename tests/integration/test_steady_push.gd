@@ -25,10 +25,28 @@ func _push(walls: Array[Node], force: Vector2 = Vector2(0, FORCE)) -> void:
 
 func _assert_steady() -> void:
 	assert_true(_world.is_armed())
+	assert_eq(_world.get_statistics()["force_waits_for"], "")
 	assert_eq(_world.get_faults(), PackedStringArray())
 	assert_almost_eq(_world.get_contact_force().length(), FORCE, 0.01 * FORCE)
 	assert_almost_eq(_world.get_force().length(), FORCE, 0.01 * FORCE)
 	assert_almost_eq(_world.get_penetration(), DEPTH, 0.01 * DEPTH)
+
+
+func test_a_tool_that_leans_on_the_wall_from_the_start_says_what_the_force_waits_for() -> void:
+	_world = Scene.make_world(Vector2(0, FORCE), 0.0)
+	add_child_autofree(
+		Scene.gather([_world, Scene.make_tool(), Scene.make_wall(Vector2(0, 62), Vector2(480, 40))])
+	)
+	await wait_physics_frames(60)
+	assert_false(_world.is_armed())
+	assert_eq(_world.get_force(), Vector2.ZERO)
+	assert_eq(_world.get_faults(), PackedStringArray())
+	var figures := _world.get_statistics()
+	assert_eq(figures["force_waits_for"], "Move the tool out of contact.")
+	assert_string_contains(HapticRunReport.new(_world, "leaning").summary(), "out of contact")
+	_world.arm(false)
+	await wait_physics_frames(2)
+	assert_eq(_world.get_statistics()["force_waits_for"], "Call arm().")
 
 
 func test_an_edge_on_one_wall() -> void:

@@ -348,7 +348,7 @@ func hold(held: bool = true) -> void:
 		_session.native.hold(held)
 
 
-## True when forces go to the device.
+## True when forces go to the device; get_statistics()["force_waits_for"] says what is missing.
 func is_armed() -> bool:
 	return is_running() and _session.state[Gateway.State.ARMED] > 0.0
 

@@ -116,6 +116,9 @@ func summary() -> String:
 			]
 		)
 	)
+	var wait: String = figures.get("force_waits_for", "")
+	if not wait.is_empty():
+		lines.append(_line("no force yet", wait))
 	return "\n".join(lines)
 
 

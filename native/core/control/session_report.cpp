@@ -35,6 +35,8 @@ void Session::write_report(const GateOutput& gate, const Wrench& command) {
     r.energy_injected = ledger_.injected();
     r.held = held_;
     r.armed = gate_.armed();
+    r.arm_wanted = arm_wanted_;
+    r.arming = arm_result_;
     r.gate = gate.flags;
     r.faults = gate.faults;
     r.fallbacks += output_.fell_back ? 1U : 0U;

@@ -48,6 +48,23 @@ constexpr double k_absurd = 1.0e9;
 
 } // namespace
 
+const char* describe_arming(ArmResult result) {
+    switch (result) {
+    case ArmResult::home_the_device_first:
+        return "Bring the handle into its home pose and call home_device().";
+    case ArmResult::hold_the_handle_still:
+        return "Hold the handle still for a moment.";
+    case ArmResult::leave_contact:
+        return "Move the tool out of contact.";
+    case ArmResult::remove_the_cause_first:
+        return "Remove the cause of the fault first.";
+    case ArmResult::armed:
+    case ArmResult::already_armed:
+        break;
+    }
+    return "";
+}
+
 OutputGate::OutputGate(const SafetyLimits& limits)
     : limits_(limits) {}
 

@@ -22,6 +22,13 @@ std::string state_text(std::span<const double> s) {
     return "its pose is " + three(0) + " m, m, rad and its velocity " + three(3) + " m/s, m/s, rad/s";
 }
 
+// why no force comes although nothing is wrong; empty when it comes, or a fault says it
+std::string waits_for(const HapticReport& r) {
+    if (r.armed || r.faults != Fault::none || r.step == 0)
+        return "";
+    return r.arm_wanted ? describe_arming(r.arming) : "Call arm().";
+}
+
 } // namespace
 
 void HapticWorld::configure(const Dictionary& settings, Problems& problems) {
@@ -398,6 +405,7 @@ Dictionary HapticWorld::statistics() const {
         if ((static_cast<std::uint32_t>(report_.faults) >> bit) & 1U)
             faults.push_back(describe_fault(bit));
     d["faults"] = faults;
+    d["force_waits_for"] = String(waits_for(report_));
     d["kernel"] = String(std::string(kernel_name(runner_->session().model())));
     d["plan"] = plan();
     d["coupling_stiffness_n_m"] = gains_.stiffness.x();

@@ -296,4 +296,12 @@ TEST_SUITE("output gate") {
         CHECK(std::string(describe_fault(k_fault_count)).empty());
         CHECK(std::string(describe_fault(-1)).empty());
     }
+
+    TEST_CASE("every refusal to arm says what to do, and no success does") {
+        for (const ArmResult refused : {ArmResult::home_the_device_first, ArmResult::hold_the_handle_still,
+                                        ArmResult::leave_contact, ArmResult::remove_the_cause_first})
+            CHECK(std::string(describe_arming(refused)).size() > 20);
+        CHECK(std::string(describe_arming(ArmResult::armed)).empty());
+        CHECK(std::string(describe_arming(ArmResult::already_armed)).empty());
+    }
 }

@@ -87,6 +87,9 @@ struct HapticReport {
     double energy_injected{0.0};
     bool held{false};
     bool armed{false};
+    /// Asked for force; while it is off without a fault, `arming` says what it waits for.
+    bool arm_wanted{false};
+    ArmResult arming{ArmResult::hold_the_handle_still};
     GateFlag gate{GateFlag::none};
     Fault faults{Fault::none};
     /// Steps in which a solver used its fallback, those of them in which the exact integrator gave way to the

@@ -44,6 +44,9 @@ enum class ArmResult : std::uint8_t {
     remove_the_cause_first, ///< the last inputs would fault again at once, or stop is pressed
 };
 
+/// What to do for the force to come, as a sentence; static storage. Empty once armed.
+const char* describe_arming(ArmResult result);
+
 /// Result of one step.
 struct GateOutput {
     /// What goes to the device (N, N, N m): always finite, within every limit.
