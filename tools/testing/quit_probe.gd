@@ -60,19 +60,22 @@ func _process(_delta: float) -> bool:
 	return false
 
 
-# The hand leans on the wall and lets go, again and again: where the first press comes before the loop of
-# a busy machine is armed, which it is only in free space, a later one is felt.
+# The hand leans on the wall and lets go, again and again: on a busy machine the first press may come
+# before the loop is armed, which it is only in free space, and is never felt; a later one is.
 func _presses() -> Array[PackedFloat64Array]:
 	var rows: Array[PackedFloat64Array] = []
 	for t: int in range(0, 120, 2):
-		rows.append_array(
-			[
-				PackedFloat64Array([t, 0.0, 0.0, 0.0]),
-				PackedFloat64Array([t + 0.15, 0.0, 0.0, 0.0]),
-				PackedFloat64Array([t + 0.3, 0.0, 0.006, 0.0]),
-				PackedFloat64Array([t + 1.0, 0.0, 0.006, 0.0]),
-				PackedFloat64Array([t + 1.2, 0.0, 0.0, 0.0]),
-			]
+		(
+			rows
+			. append_array(
+				[
+					PackedFloat64Array([t, 0.0, 0.0, 0.0]),
+					PackedFloat64Array([t + 0.15, 0.0, 0.0, 0.0]),
+					PackedFloat64Array([t + 0.3, 0.0, 0.006, 0.0]),
+					PackedFloat64Array([t + 1.0, 0.0, 0.006, 0.0]),
+					PackedFloat64Array([t + 1.2, 0.0, 0.0, 0.0]),
+				]
+			)
 		)
 	return rows
 
