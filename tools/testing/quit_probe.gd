@@ -60,7 +60,7 @@ func _process(_delta: float) -> bool:
 	return false
 
 
-# The hand leans on the wall and lets go, again and again: on a busy machine the first press may come
+# The hand leans on the wall and lets go, again and again. On a busy machine the first press may come
 # before the loop is armed, which it is only in free space, and is never felt; a later one is.
 func _presses() -> Array[PackedFloat64Array]:
 	var rows: Array[PackedFloat64Array] = []
