@@ -60,8 +60,8 @@ func _process(_delta: float) -> bool:
 	return false
 
 
-# The hand leans on the wall and lets go, again and again. On a busy machine the first press may come
-# before the loop is armed, which it is only in free space, and is never felt; a later one is.
+# The hand leans on the wall and lets go, again and again. On a busy machine the first press may
+# come before the loop is armed, which it is only in free space, and is never felt; a later one is.
 func _presses() -> Array[PackedFloat64Array]:
 	var rows: Array[PackedFloat64Array] = []
 	for t: int in range(0, 120, 2):
