@@ -213,21 +213,33 @@ void HapticRunner::step(const StepTime& time) {
     turn_.fetch_add(1);
 }
 
+// The tool first, then the linkages by their numbers; each meets those that come after it.
 void HapticRunner::step_all(const StepTime& time) {
+    std::array<Beside, k_max_guests> beside;
+    std::size_t count = 0;
+    for (Guest& g : guests_)
+        if (HapticRunner* guest = g.runner.load()) {
+            guest->session_->end_pushes();
+            beside[count++] = {guest, g.id};
+        }
+    const std::span<Beside> guests(beside.data(), count);
+    std::sort(guests.begin(), guests.end(), [](const Beside& a, const Beside& b) { return a.id < b.id; });
+    step_one(time, guests);
+    for (std::size_t i = 0; i < count; ++i)
+        guests[i].runner->step_one(time, guests.subspan(i + 1));
+}
+
+void HapticRunner::step_one(const StepTime& time, std::span<const Beside> later) {
     take_scene(time);
     if (is_guest_ && paused_by_scene_)
         return;
     if (hook_ != nullptr)
         hook_->before_step(*session_);
-    for (Guest& g : guests_)
-        if (HapticRunner* guest = g.runner.load())
-            session_->follow(*guest->session_, g.id);
+    for (const Beside& other : later)
+        session_->follow(*other.runner->session_, other.id);
     session_->step();
-    for (Guest& g : guests_)
-        if (HapticRunner* guest = g.runner.load()) {
-            session_->push(*guest->session_, g.id);
-            guest->step(time);
-        }
+    for (const Beside& other : later)
+        session_->push(*other.runner->session_, other.id);
     publish_results();
 }
 

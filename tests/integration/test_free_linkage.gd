@@ -267,3 +267,63 @@ func test_it_follows_its_node_and_its_figures() -> void:
 	await wait_physics_frames(240)
 	var sag := _MASS * _G * _CENTER * cos(link.rotation) / 5.0
 	assert_almost_eq(link.get_coordinate(), 0.3 + sag, 0.002)
+
+
+# two equal pendulums side by side that touch when both hang; `first` is lifted by 0.6 rad and swings
+# against `second`. Returns how far each gets after the hit, and the largest sum of both energies.
+func _cradle(restitution: float, swapped: bool) -> Dictionary:
+	_with_gravity()
+	var surface := HapticSurface.new()
+	surface.restitution = restitution
+	surface.static_friction = 0.0
+	surface.dynamic_friction = 0.0
+	_world.default_surface = surface
+	var first := Linkages.make_chain(1, Vector2(200, 20))
+	var second := Linkages.make_chain(1, Vector2(200, 20), Vector2(-20.2, 0))
+	# the screen's y points down: less than a right angle is to the right
+	first.get_links()[0].rotation = PI / 2.0 - 0.6
+	second.get_links()[0].rotation = PI / 2.0
+	_linkage = second if swapped else first
+	await _run([first if swapped else second], 1)
+	var start := 0.0
+	var most := -INF
+	var farthest: Array[float] = [0.0, 0.0]
+	# a quarter of a period is 6 ticks: the way down, up again, and not until the next hit
+	for i: int in 13:
+		await get_tree().physics_frame
+		var sum := 0.0
+		for one: HapticLinkage2D in [first, second]:
+			_linkage = one
+			sum += _energy() if one.get_mover() != null else 0.0
+		if i == 1:
+			start = sum
+		most = maxf(most, sum - start)
+		if i > 4:
+			farthest[0] = maxf(farthest[0], first.get_links()[0].rotation - PI / 2.0)
+			farthest[1] = maxf(farthest[1], second.get_links()[0].rotation - PI / 2.0)
+	return {"first": farthest[0], "second": farthest[1], "gain": most}
+
+
+# equal masses without loss: the one that came stays, the other goes on as far
+func _check_cradle(swapped: bool) -> void:
+	var cradle := await _cradle(1.0, swapped)
+	assert_almost_eq(cradle["second"] as float, 0.6, 0.03)
+	assert_almost_eq(cradle["first"] as float, 0.0, 0.06)
+	assert_lt(cradle["gain"] as float, 2e-4)
+
+
+func test_two_pendulums_hand_a_swing_over() -> void:
+	await _check_cradle(false)
+
+
+func test_two_pendulums_hand_a_swing_over_whichever_started_first() -> void:
+	await _check_cradle(true)
+
+
+func test_two_pendulums_go_on_together_where_nothing_bounces() -> void:
+	# at the hit both get half the rate, a quarter of the height in all
+	var cradle := await _cradle(0.0, false)
+	var angle := acos(1.0 - 0.25 * (1.0 - cos(0.6)))
+	assert_almost_eq(cradle["first"] as float, angle, 0.03)
+	assert_almost_eq(cradle["second"] as float, angle, 0.03)
+	assert_lt(cradle["gain"] as float, 2e-4)

@@ -5,6 +5,8 @@ extends "body_reader.gd"
 
 const FreeLinkage := preload("../nodes/free_linkage.gd")
 
+var _yields := false
+
 
 func kind() -> String:
 	return "movable" if _mover() != null else "kinematic"
@@ -23,6 +25,10 @@ func describe(fallback: HapticSurface) -> Dictionary:
 
 func read_state(tick: int, seconds: float) -> PackedFloat64Array:
 	var mover := _mover()
+	# its linkage was taken, let go or started: until it is described anew it would not yield
+	if (mover != null) != _yields:
+		_yields = mover != null
+		is_dirty = true
 	if mover == null:
 		return super.read_state(tick, seconds)
 	_state = mover.state_of(node as HapticLink2D)

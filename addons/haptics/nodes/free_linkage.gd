@@ -2,9 +2,9 @@
 extends RefCounted
 ## A linkage that nobody holds: the same native dynamics and contacts as when it is held.
 ##
-## While the world runs, its loop steps the linkage too, and the tool and the links meet at every
-## haptic step. Else the physics tick runs the steps. Walls and objects it meets as a tool does;
-## other linkages that nobody holds are bodies that move and do not yield.
+## While the world runs, its loop steps the linkage too, and the tool and the links of all such
+## linkages meet at every haptic step. Else the physics tick runs the steps, and other linkages are
+## bodies that move and do not yield. Walls and objects it meets as a tool does.
 
 const Gateway := preload("gateway.gd")
 const Neighborhood := preload("../environment/neighborhood.gd")
@@ -73,6 +73,8 @@ func start() -> bool:
 	if _host == null or not _native.start_beside(_host).is_empty():
 		_is_alone = true
 		_native.start(false, 0.0)
+	else:
+		_neighborhood.push_links()
 	_native.refresh()
 	_states = _native.get_links()
 	for link: HapticLink2D in _links:
@@ -113,8 +115,7 @@ func tick(seconds: float) -> void:
 		mask |= link.collision_mask
 	var distance := func(extent: float, speed: float) -> float:
 		return _reach.distance(extent, speed, _TOP_SPEED, seconds)
-	# the loop knows of the contact with the tool itself
-	_neighborhood.leave_out(_parts if _is_alone else _parts + _world.get_run().get_parts())
+	_neighborhood.leave_out(_parts if _is_alone else _parts + _met_by_others())
 	# the loop runs in real time: velocities of the scene go with its time scale, accelerations twice
 	var scale := 1.0
 	if not _is_alone and _world.mode == HapticWorld2D.Mode.REALTIME:
@@ -132,6 +133,27 @@ func tick(seconds: float) -> void:
 	if _is_alone:
 		_native.advance(seconds)
 	show()
+
+
+# The loop solves a contact of two once: the tool's run that with all linkages, and of two linkages
+# that with the smaller number.
+func _met_by_others() -> Array[RID]:
+	var parts := _world.get_run().get_parts()
+	for linkage: HapticLinkage2D in _world.get_tree().get_nodes_in_group(LinkageReader.LINKAGES):
+		var other := linkage.get_mover()
+		if other != null and other.is_beside_tool() and other.comes_before(_native, _host):
+			parts.append_array(other.get_parts())
+	return parts
+
+
+## Runs in the loop of `host` and meets the linkage of `native` there.
+func comes_before(native: Gateway, host: Gateway) -> bool:
+	return _host == host and _native.id() < native.id()
+
+
+## The areas of its links.
+func get_parts() -> Array[RID]:
+	return _parts
 
 
 ## Stands still while the game is paused.

@@ -33,6 +33,10 @@ void Session::follow(Session& linkage, std::uint64_t id) {
     follow_linkage(*data_, id, *linkage.model_, *linkage.data_, settings_.step);
 }
 
+void Session::end_pushes() {
+    haptics::end_pushes(*data_);
+}
+
 void Session::push(Session& linkage, std::uint64_t id) {
     push_linkage(*data_, id, *linkage.data_, settings_.step);
 }

@@ -9,9 +9,11 @@
 // so the link's center of mass moves by
 //     W = R A^-1 R',   a = R A^-1 (f - h sum K_j r_j' r_j v) + J' v
 // and what the tool's step foresees is what the linkage then does, as long as the same contacts press and
-// only one link is touched; with several, the tool foresees each without the others. Rows are those of the
-// last step that pressed or stuck; what slid goes on with the force it had. Contacts of the linkage with
-// movables are left out: the tool's model has these itself.
+// only one link is touched; with several, the tool foresees each without the others. Several linkages take
+// turns: each meets those whose turn comes later in the same way, with what pushed them before it in f, and
+// they know nothing of it but the wrench, so that a hit between two is resolved once, for both. Rows are
+// those of the last step that pressed or stuck; what slid goes on with the force it had. Contacts of the
+// linkage with movables are left out: the tool's model has these itself.
 
 #include <haptics/core/dynamics/jacobian.hpp>
 #include <haptics/core/dynamics/kinematics.hpp>
@@ -93,6 +95,17 @@ void add_rows(const Data& data, Yielding& y) {
     }
 }
 
+void add_pushes(const LinkageModel& linkage, const Data& data, Yielding& y) {
+    PointJacobian rows;
+    for (int i = 0; i < linkage.link_count; ++i) {
+        const Wrench& push = data.push[static_cast<std::size_t>(i)];
+        if (push.isZero(0.0))
+            continue;
+        point_jacobian(linkage, data.linkage, i, link_center_pose(linkage, data.linkage, i).head<2>(), rows);
+        y.force += rows.transpose().lazyProduct(push);
+    }
+}
+
 } // namespace
 
 LinkResponse link_response(const Model& model, const Data& data, int link, double dt) {
@@ -108,6 +121,8 @@ LinkResponse link_response(const Model& model, const Data& data, int link, doubl
         add_joint_springs(linkage, data.linkage, y);
     if (data.step > 0)
         add_rows(data, y);
+    if (data.pushed)
+        add_pushes(linkage, data, y);
 
     const Vec2 center = link_center_pose(linkage, data.linkage, link).head<2>();
     PointJacobian rows;
@@ -130,7 +145,11 @@ void push_link(Data& data, int link, const Wrench& wrench) {
     if (!data.pushed)
         data.push.fill(Wrench::Zero());
     data.pushed = true;
-    data.push[static_cast<std::size_t>(link)] = wrench;
+    data.push[static_cast<std::size_t>(link)] += wrench;
+}
+
+void end_pushes(Data& data) {
+    data.pushed = false;
 }
 
 void follow_linkage(Data& data, std::uint64_t id, const Model& model, const Data& linkage, double dt) {
@@ -155,7 +174,6 @@ void follow_linkage(Data& data, std::uint64_t id, const Model& model, const Data
 }
 
 void push_linkage(Data& data, std::uint64_t id, Data& linkage, double dt) {
-    linkage.pushed = false;
     for (std::int32_t i = 0; i < data.movable_count; ++i) {
         MovableState& m = data.movable[static_cast<std::size_t>(i)];
         if (m.body < 0)

@@ -177,3 +177,66 @@ TEST_CASE("at most so many linkages run beside a tool") {
     two.host->detach(*two.guest);
     CHECK(two.host->attach(*two.guest, 99));
 }
+
+namespace {
+
+// a rod that floats beside a tool
+std::unique_ptr<HapticRunner> floating_rod(const Pose& at, double speed) {
+    const Model model = shared::linkage_tool(shared::chain(1, BaseKind::floating));
+    SessionSettings free;
+    free.hold_at_start = false;
+    free.coupling = Coupling::virtual_coupling;
+    shared::HeldTool rod(model, at, SimulatedHandOptions{}, free);
+    rod.session->set_rates(Vec3(0.0, speed, 0.0));
+    static std::vector<std::unique_ptr<SimulatedPantograph>> devices;
+    devices.push_back(std::move(rod.device));
+    return std::make_unique<HapticRunner>(std::move(rod.session), nullptr);
+}
+
+double speed_of(HapticRunner& rod) {
+    return rod.latest_report().configuration_rate[1];
+}
+
+} // namespace
+
+TEST_CASE("two linkages beside a tool hit each other once, in whichever order they joined") {
+    for (const bool swapped : {false, true}) {
+        CAPTURE(swapped);
+        shared::HeldTool held(shared::box_tool(0.3), Pose(1.0, 1.0, 0.0), SimulatedHandOptions{});
+        HapticRunner host(std::move(held.session), nullptr);
+        // equal rods, one comes down on the other: without loss they exchange their speeds
+        auto first = floating_rod(Pose(0.0, 0.02, 0.0), -0.5);
+        auto second = floating_rod(Pose(0.0, 0.0, 0.0), 0.0);
+        REQUIRE(host.attach(swapped ? *second : *first, swapped ? 8 : 7));
+        REQUIRE(host.attach(swapped ? *first : *second, swapped ? 7 : 8));
+        Neighborhood n;
+        n.sequence = 1;
+        Surface surface = shared::paper_surface();
+        surface.restitution = 1.0;
+        Body& b = n.bodies.body[static_cast<std::size_t>(
+            shared::add_body(n.bodies, 1, BodyKind::movable, surface, Pose(0.05, 0.0, 0.0)))];
+        b.mass = 0.1;
+        b.inertia = 0.1 * 0.1 * 0.1 / 12.0;
+        b.jointed = true;
+        b.linkage = 8;
+        b.mobility = Mat3::Identity();
+        shared::add_piece(n.bodies, make_box(Vec2::Zero(), Vec2(0.1, 0.01)));
+        first->neighborhood() = n;
+        first->publish();
+        second->neighborhood() = *shared::empty_world();
+        second->publish();
+        host.neighborhood() = *shared::empty_world();
+        host.publish();
+        LockstepClock clock(1000.0);
+        RealtimeGuard guard;
+        for (int left = clock.begin_tick(0.05); left > 0; --left) {
+            const StepTime time = clock.next();
+            guard.begin();
+            host.step(time);
+            guard.end();
+        }
+        CHECK_MESSAGE(guard.violations() == 0, guard.first());
+        CHECK(speed_of(*first) == doctest::Approx(0.0).epsilon(0.005));
+        CHECK(speed_of(*second) == doctest::Approx(-0.5).epsilon(0.01));
+    }
+}

@@ -54,6 +54,7 @@ struct Beside {
         take_neighborhood(*shared::empty_world(), *links);
     }
     void run(const HandInput& hand = {}) {
+        end_pushes(*links);
         follow_linkage(*data, k_number, linkage, *links, step_time);
         step(tool, *data, hand, step_time, out);
         push_linkage(*data, k_number, *links, step_time);
@@ -236,4 +237,36 @@ TEST_CASE("random pushes between a tool and an arm create no energy") {
         // and 1.0144 seen
         CHECK(seen.two_at_once < 1.015);
     }
+}
+
+TEST_CASE("two linkages that nobody holds share a hit by their masses: momentum, energy, restitution") {
+    Surface surface = shared::paper_surface();
+    for (const double e : {0.0, 0.5, 1.0})
+        for (const double heavy : {0.1, 1.0, 20.0})
+            for (const double at : {0.0, 0.04}) {
+                CAPTURE(e);
+                CAPTURE(heavy);
+                CAPTURE(at);
+                surface.restitution = e;
+                LinkageSpec upper = shared::chain(1, BaseKind::floating);
+                upper.links[0].mass = heavy;
+                upper.links[0].inertia = heavy * 1e-4;
+                // both lie along x, the lower one's center at the origin
+                const LinkageSpec lower = shared::chain(1, BaseKind::floating);
+                const Vec2 center = lower.links[0].center;
+                Beside both(shared::linkage_tool(upper), Pose(at - center.x(), 0.016, 0.0), lower,
+                            joints_at({-center.x(), 0.0, 0.0}), surface);
+                both.data->tool.piece[0].convex = make_disc(Vec2::Zero(), 0.01);
+                both.data->linkage.velocity[1] = -0.5;
+                const double inertia = lower.links[0].inertia;
+                for (int i = 0; i < 6; ++i)
+                    both.run();
+                const Twist& above = both.data->tool.body[0].velocity;
+                const Twist& below = both.links->tool.body[0].velocity;
+                const double mass = lower.links[0].mass;
+                const double impulse = (1.0 + e) * 0.5 / (1.0 / heavy + 1.0 / mass + at * at / inertia);
+                CHECK(above.y() == doctest::Approx(-0.5 + impulse / heavy).epsilon(0.01));
+                CHECK(below.y() == doctest::Approx(-impulse / mass).epsilon(0.01));
+                CHECK(below.z() == doctest::Approx(-impulse * at / inertia).epsilon(0.01));
+            }
 }

@@ -13,6 +13,7 @@
 #include <array>
 #include <atomic>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -69,8 +70,9 @@ class HapticRunner final : public LoopStep {
     /// Linkages that nobody holds and that run beside the tool.
     static constexpr int k_max_guests = 8;
     /// Owner: from the next step on, every step of this runner steps `guest` too, which neither has a thread
-    /// nor is advanced; `id` > 0 is how bodies name it (Body::linkage). Both have the same step. False when
-    /// all places are taken.
+    /// nor is advanced; `id` > 0 is how bodies name it (Body::linkage). Both have the same step. Of two
+    /// guests the one with the smaller id has the other's links among its bodies, and never the other way
+    /// round. False when all places are taken.
     bool attach(HapticRunner& guest, std::uint64_t id) noexcept;
     /// Owner: once this returns nothing steps `guest`. Waits at most for the step that runs now.
     void detach(HapticRunner& guest) noexcept;
@@ -112,7 +114,12 @@ class HapticRunner final : public LoopStep {
     void loop_ends() noexcept override;
 
   private:
+    struct Beside {
+        HapticRunner* runner{nullptr};
+        std::uint64_t id{0};
+    };
     void step_all(const StepTime& time);
+    void step_one(const StepTime& time, std::span<const Beside> later);
     void take_scene(const StepTime& time) noexcept;
     void take_commands() noexcept;
     void watch_scene(double time) noexcept;

@@ -105,6 +105,8 @@ class Session {
     /// Coordinates of the tool go on at these rates (a start in motion); ignored unless there is one for each
     /// freedom.
     void set_rates(const LinkageVector& rates);
+    /// Before the steps of all that meet in a loop: no wrench from before acts on this one, a linkage.
+    void end_pushes();
     /// Before a step: the bodies that are links of `linkage`, number `id`, are where it has them. Both have
     /// the same step.
     void follow(Session& linkage, std::uint64_t id);

@@ -1,6 +1,6 @@
 #pragma once
-/// A linkage that nobody holds beside a held tool: both are stepped in turn, and the contact between them is
-/// solved with the tool's, at every haptic step. Loop thread; allocates nothing.
+/// Linkages that nobody holds beside a held tool: all are stepped in turn, and a contact between two of them
+/// is solved by the one whose turn comes first, at every haptic step. Loop thread; allocates nothing.
 
 #include <haptics/core/local_model/data.hpp>
 
@@ -15,12 +15,15 @@ struct LinkResponse {
 };
 
 /// The answer of `link` over the next `dt` s, after a step: springs, dampers, limits and contacts of the
-/// linkage go on as in that step. A link that the linkage does not have yields to nothing.
+/// linkage go on as in that step, and what it was pushed with since end_pushes() acts. A link that the
+/// linkage does not have yields to nothing.
 LinkResponse link_response(const Model& model, const Data& data, int link, double dt);
 
-/// From now on `wrench` acts on `link` of the linkage that is the tool of `data`, in place of the one before
-/// it.
+/// From now on `wrench` acts on `link` of the linkage that is the tool of `data`, beside what does already.
 void push_link(Data& data, int link, const Wrench& wrench);
+
+/// None of those acts any more.
+void end_pushes(Data& data);
 
 /// Before a step of `dt` s of the model that `data` belongs to: its bodies that are links of the linkage
 /// number `id` are where `linkage` has them, and yield as they do.
