@@ -269,8 +269,8 @@ func test_it_follows_its_node_and_its_figures() -> void:
 	assert_almost_eq(link.get_coordinate(), 0.3 + sag, 0.002)
 
 
-# two equal pendulums side by side that touch when both hang; `first` is lifted by 0.6 rad and swings
-# against `second`. Returns how far each gets after the hit, and the largest sum of both energies.
+# Two equal pendulums side by side that touch when both hang; `first` is lifted by 0.6 rad and
+# swings against `second`. Returns how far each gets after the hit, and how much the energy grew.
 func _cradle(restitution: float, swapped: bool) -> Dictionary:
 	_with_gravity()
 	var surface := HapticSurface.new()
