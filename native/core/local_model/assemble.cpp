@@ -17,6 +17,8 @@
 // Only movables that a chain of contacts joins to the tool are in the system: the others touch nothing that
 // the hand can feel, and the environment moves them.
 
+#include <haptics/core/dynamics/kinematics.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -96,7 +98,7 @@ void add_side(const Model& model, const Data& data, std::int32_t body, int row, 
     if (row == k_none && !data.plan.runs(Stage::moving_walls))
         return;
     const Body& b = body_of(data, body);
-    const Vec2 arm = p - b.pose.head<2>();
+    const Vec2 arm = p - b.pose.head<2>() - data.system.ahead * b.velocity.head<2>();
     if (row == k_none) {
         drive -= sign * n.dot(velocity_at(b.velocity, arm));
         return;
@@ -104,6 +106,36 @@ void add_side(const Model& model, const Data& data, std::int32_t body, int row, 
     target[row] += sign * n.x();
     target[row + 1] += sign * n.y();
     target[row + 2] += sign * cross(arm, n);
+}
+
+// Where a point of a patch is, and its normal there, `ahead` s later.
+struct Place {
+    Vec2 point;
+    Vec2 normal;
+};
+
+Place ahead(const Model& model, const Data& data, const Patch& patch, const Vec2& point) {
+    Place at{point, patch.normal};
+    const double time = data.system.ahead;
+    if (time == 0.0)
+        return at;
+    // the face turns the normal, the other side carries the point
+    const auto turn = [&](std::int32_t body) {
+        if (body >= data.tool.body_count)
+            return time * body_of(data, body).velocity.z();
+        return link_center_pose(model.tool.linkage, data.linkage, body).z() - body_of(data, body).pose.z();
+    };
+    const bool face_of_a = patch.side.face == PatchSide::Face::of_a;
+    const std::int32_t face = face_of_a ? patch.body_a : patch.body_b;
+    const std::int32_t carrier = face_of_a ? patch.body_b : patch.body_a;
+    const Body& b = body_of(data, carrier);
+    const Vec2 arm = point - b.pose.head<2>();
+    Vec2 center = b.pose.head<2>() + time * b.velocity.head<2>();
+    if (carrier < data.tool.body_count)
+        center = link_center_pose(model.tool.linkage, data.linkage, carrier).head<2>();
+    at.point = center + rotate(turn(carrier), arm);
+    at.normal = rotate(turn(face), patch.normal);
+    return at;
 }
 
 // the same for a rigid tool and something that is not in the system: the row is written, not added to
@@ -151,7 +183,7 @@ void assemble_mass(const Model& model, Data& data) {
 
 void add_limit(const JointSpec& joint, int i, double dt, Data& data) {
     ContactSystem& s = data.system;
-    const double q = data.linkage.position[i];
+    const double q = data.linkage.position[i] + s.displacement[i];
     const double below = q - joint.lower_limit;
     const double above = joint.upper_limit - q;
     const double gap = std::min(below, above);
@@ -295,8 +327,9 @@ void assemble(const Model& model, Data& data, double dt) {
             if (lone) {
                 write_rigid_row(data, other, walls_move, point.position, p.normal, row, r.drive);
             } else {
-                add_side(model, data, p.body_a, row_a, point.position, p.normal, 1.0, row, r.drive);
-                add_side(model, data, p.body_b, row_b, point.position, p.normal, -1.0, row, r.drive);
+                const Place at = ahead(model, data, p, point.position);
+                add_side(model, data, p.body_a, row_a, at.point, at.normal, 1.0, row, r.drive);
+                add_side(model, data, p.body_b, row_b, at.point, at.normal, -1.0, row, r.drive);
             }
             if (p.presence < 1.0)
                 damp_fading(model, data, s.points, p.presence);
@@ -312,8 +345,10 @@ void assemble(const Model& model, Data& data, double dt) {
             write_rigid_row(data, other, walls_move, middle, tangent, row, t.drive);
             continue;
         }
-        add_side(model, data, p.body_a, row_a, middle, tangent, 1.0, row, t.drive);
-        add_side(model, data, p.body_b, row_b, middle, tangent, -1.0, row, t.drive);
+        const Place at = ahead(model, data, p, middle);
+        const Vec2 along = perpendicular(at.normal);
+        add_side(model, data, p.body_a, row_a, at.point, along, 1.0, row, t.drive);
+        add_side(model, data, p.body_b, row_b, at.point, along, -1.0, row, t.drive);
     }
     assemble_joints(model, data, dt);
 }

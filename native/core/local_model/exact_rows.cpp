@@ -278,8 +278,9 @@ double unseen_energy(const Model& model, Data& data, const ExactMotion& motion) 
     return energy;
 }
 
-double unearned_energy(const Data& data, double dt) {
+double unearned_energy(const Data& data, double dt, double& earned) {
     double unearned = 0.0;
+    earned = 0.0;
     for (int i = 0; i < data.patches.count; ++i) {
         const Patch& now = data.patches.patch[index(i)];
         double energy = 0.0;
@@ -310,6 +311,7 @@ double unearned_energy(const Data& data, double dt) {
             if (nearest < reach || !goes_on)
                 energy +=
                     std::max(0.0, overlap_energy(stiffness, point.gap) - overlap_energy(stiffness, gap));
+            earned += overlap_energy(stiffness, gap);
         }
         unearned += energy;
     }

@@ -41,7 +41,7 @@ double turn_rows_halfway(const Model& model, Data& data, const StretchRows& star
 double unseen_energy(const Model& model, Data& data, const ExactMotion& motion);
 
 // Energy of overlaps at the start of a step that the last step did not end with, J (data.previous and
-// data.patches).
-double unearned_energy(const Data& data, double dt);
+// data.patches); `earned` becomes the energy of those that it did end with.
+double unearned_energy(const Data& data, double dt, double& earned);
 
 } // namespace haptics::local

@@ -3,7 +3,7 @@
 // The step is made of stretches. A stretch of a rigid tool ends where a point closes or opens, or where its
 // rows would no longer do, and contacts are found again there (exact_rows.cpp). At most k_max_stretches are
 // made; the last one goes to the end of the step with the rows that it has. Linkages keep the rows and the
-// mass matrix of the start of the step (proxy.cpp); they stop for collisions alone.
+// mass matrix of a place foreseen halfway (proxy.cpp); they stop for collisions alone.
 //
 // Collisions. A stretch stops where a point that may collide closes, at its true time, and the impulses
 // follow.
@@ -35,6 +35,7 @@ constexpr double k_nothing_new = 1e-6;
 constexpr double k_unseen_share = 1e-5;
 constexpr double k_share_change = 0.02;
 constexpr double k_unseen = 1e-12;
+// share of the energy of motion and contacts, which at the turn of a bounce is all in the contacts
 constexpr double k_unearned_share = 1e-3;
 constexpr double k_unearned = 1e-7;
 
@@ -186,6 +187,17 @@ void go_on(const Model& model, Data& data, const HandInput& hand, const ExactTas
     move_bodies(model, data, motion.moved, motion.done);
 }
 
+// Nothing of the step is done: the leapfrog takes it with the place of its start (proxy.cpp).
+void go_back(const Model& model, Data& data, double dt) {
+    ContactSystem& s = data.system;
+    if (s.ahead == 0.0)
+        return;
+    s.ahead = 0.0;
+    data.linkage.position = s.start_position;
+    place_tool(model, data);
+    assemble(model, data, dt);
+}
+
 void give_way(const Model& model, Data& data, const HandInput& hand, double left, double step,
               StepOutput& output) {
     output.fell_back = true;
@@ -201,9 +213,11 @@ void step_exactly(const Model& model, Data& data, const HandInput& hand, double 
     const bool rigid = !model.tool.articulated;
     const int most_hits = data.plan.runs(Stage::collisions) ? model.settings.max_events : 0;
     bool applies = StretchRows::fits(s);
-    if (applies && unearned_energy(data, dt) > k_unearned) {
+    double earned = 0.0;
+    const double unearned = applies ? unearned_energy(data, dt, earned) : 0.0;
+    if (unearned > k_unearned) {
         need_mass(model, data);
-        applies = unearned_energy(data, dt) <= k_unearned + k_unearned_share * kinetic_energy(s, s.freedoms);
+        applies = unearned <= k_unearned + k_unearned_share * (kinetic_energy(s, s.freedoms) + earned);
     }
     Effort effort;
     double left = dt;
@@ -223,6 +237,8 @@ void step_exactly(const Model& model, Data& data, const HandInput& hand, double 
             go_on(model, data, hand, task, dt, effort, motion, output);
         left = motion.done < left ? left - motion.done : 0.0;
         if (left > 0.0 && !motion.stopped) {
+            if (left == dt && hits == 0)
+                go_back(model, data, dt);
             give_way(model, data, hand, left, dt, output);
             break;
         }

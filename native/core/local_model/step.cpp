@@ -64,6 +64,7 @@ void make_step(const Model& model, Data& data, const HandInput& hand, double dt,
         local::finish(model, data, output);
         return;
     }
+    data.system.ahead = exact && model.tool.articulated ? 0.5 * dt : 0.0;
     local::assemble(model, data, dt);
 
     output.grip_mobility = local::mobility(model, data);
@@ -116,6 +117,7 @@ void step_direct(const Model& model, Data& data, const Pose& pose, const Twist& 
     local::move_neighbors(data, dt);
     local::place_tool(model, data);
     find_contacts(model, data, dt);
+    data.system.ahead = 0.0;
     local::assemble(model, data, dt);
     output.grip_mobility = local::mobility(model, data);
     local::explicit_forces(model, data, dt, output);

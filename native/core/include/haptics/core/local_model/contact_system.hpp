@@ -138,6 +138,8 @@ struct ContactSystem {
     LinkageVector tool_force;
     /// What the coordinates of a linkage changed by since the step began.
     LinkageVector displacement;
+    /// A linkage's D and J are those of so much later than the start of the step, s (exact integrator).
+    double ahead{0.0};
     /// Coordinates and velocity of a linkage when the step began, and what collisions changed it by since.
     LinkageVector start_position;
     LinkageVector start_velocity;
