@@ -95,7 +95,18 @@ func test_limits_out_of_order_are_named() -> void:
 	assert_string_contains(
 		LinkageChecks.of_link(link)[0], "lower_limit is 1.0 and upper_limit -1.0"
 	)
-	assert_string_contains(_problem(), "Link3")
+	assert_eq(_problem(), "", "said once, by the link")
+
+
+func test_limits_that_are_no_numbers_are_named_as_they_are() -> void:
+	var link := _linkage.get_links()[2]
+	link.has_limits = true
+	_build()
+	for limit: StringName in [&"lower_limit", &"upper_limit"]:
+		link.set(limit, NAN)
+		assert_string_contains(LinkageChecks.of_link(link)[0], "%s is nan" % limit)
+		assert_eq(_problem(), "")
+		link.set(limit, 1.0 if limit == &"upper_limit" else -1.0)
 
 
 func test_a_floating_linkage_with_two_roots() -> void:

@@ -25,9 +25,10 @@ func _init(scale: float = 4000.0, pose: Transform2D = Transform2D.IDENTITY) -> v
 	set_frame(pose)
 
 
-## Takes the pose of the world node over. Its scale is not: a scaled world is refused.
+## Takes the pose of the world node over. Its scale is not: a scaled world is refused. A pose that
+## is no place leaves the last one.
 func set_frame(pose: Transform2D) -> void:
-	if pose == _frame_pose:
+	if pose == _frame_pose or not pose.is_finite():
 		return
 	frame += 1
 	_frame_pose = pose

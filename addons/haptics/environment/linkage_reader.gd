@@ -117,7 +117,7 @@ static func _describe_link(
 		frame.append(-rest.get_rotation())
 	var described := {
 		"parent": links.find(link.get_parent_link()),
-		"joint": _JOINTS[link.joint],
+		"joint": _JOINTS.get(link.joint, str(link.joint)),
 		"frame": frame,
 		"coordinate": linkage.get_coordinate(link) * turn,
 		"rate": linkage.get_rate(link) * turn,

@@ -12,6 +12,9 @@ const Reach := preload("reach.gd")
 const _TICKS_TO_LOOK := 8
 # and everything is described anew in so many, whatever was noticed
 const _TICKS_TO_DESCRIBE := 240
+# of our own nodes
+const _TELL := &"tell_problems"
+
 ## Surface of bodies that have none.
 var default_surface: HapticSurface
 ## Bodies in the last snapshot.
@@ -173,8 +176,10 @@ func _describe(reader: BodyReader, problems: PackedStringArray) -> void:
 		return
 	var wrong := reader.problems + _native.set_body(reader.id, description)
 	reader.is_usable = _native.is_valid() and wrong.size() == reader.problems.size()
-	# our own nodes report themselves
-	if reader.node is HapticWall2D or reader.node is HapticObject2D:
+	# our own nodes report themselves, each once
+	if reader.node.has_method(_TELL):
+		if wrong.size() > 0:
+			reader.node.call(_TELL)
 		return
 	for text: String in wrong:
 		problems.append("%s: %s" % [reader.node.get_path(), text])

@@ -9,6 +9,9 @@ const FixedBody := preload("../environment/fixed_body.gd")
 const MovableBody := preload("../environment/movable_body.gd")
 const ToolReader := preload("../environment/tool_reader.gd")
 const LinkageChecks := preload("linkage_checks.gd")
+const PlaceChecks := preload("place_checks.gd")
+const WorldSettings := preload("world_settings.gd")
+const Choices := preload("../resources/choices.gd")
 const StartCheck := preload("../environment/start_check.gd")
 
 const NO_WORLD := "There is no HapticWorld2D in this scene. Add one, or nothing can be felt."
@@ -18,10 +21,12 @@ const NO_WORLD := "There is no HapticWorld2D in this scene. Add one, or nothing 
 static func of_body(body: CollisionObject2D) -> PackedStringArray:
 	if not body.is_inside_tree():
 		return []
+	if not body.global_transform.is_finite():
+		return PlaceChecks.of(body)
 	var world := HapticWorld2D.find_for(body)
 	var units := HapticUnits.new()
 	var problems := PackedStringArray()
-	if world != null and not _has_scale(world):
+	if world != null and not PlaceChecks.can_measure(world):
 		# the world says it
 		return []
 	if world != null:
@@ -47,7 +52,7 @@ static func of_body(body: CollisionObject2D) -> PackedStringArray:
 ## A rigid body: of_body, and what Godot would do to it.
 static func of_object(body: RigidBody2D) -> PackedStringArray:
 	var problems := of_body(body)
-	if not body.is_inside_tree():
+	if not body.is_inside_tree() or not body.global_transform.is_finite():
 		return problems
 	if not _is_unit(body.global_scale):
 		problems.append(
@@ -84,14 +89,12 @@ static func of_tool(tool: HapticTool2D) -> PackedStringArray:
 	var world := HapticWorld2D.find_for(tool)
 	if world == null:
 		return [NO_WORLD]
-	if not _has_scale(world):
+	if not PlaceChecks.can_measure(world):
 		return []
-	var problems := PackedStringArray()
+	var problems := Choices.problem("grip", tool.grip, HapticTool2D.Grip)
 	var units := HapticUnits.new(world.pixels_per_meter, world.global_transform)
-	if not _is_unit(tool.global_scale):
-		problems.append(
-			"The scale is %s. Set it to 1 and scale the shapes instead." % tool.global_scale
-		)
+	if tool.global_transform.is_finite():
+		problems.append_array(PlaceChecks.of_shape(tool))
 	if world.get_tool() != tool and not world.get_tool() is HapticLink2D:
 		problems.append(
 			(
@@ -108,7 +111,8 @@ static func of_tool(tool: HapticTool2D) -> PackedStringArray:
 	if Gateway.is_available():
 		var wrong := Gateway.new().set_tool(description)
 		problems.append_array(_without_twins(wrong, problems))
-	if not problems.is_empty():
+	# once the loop moves it, it stands where it was put
+	if not problems.is_empty() or world.is_running() and world.get_tool() == tool:
 		return problems
 	var wall := StartCheck.find_overlap(tool, _root_of(tool), StartCheck.slack(units))
 	if wall != null:
@@ -149,8 +153,9 @@ static func of_world(world: HapticWorld2D) -> PackedStringArray:
 				% [first.name, world.name, world.name]
 			)
 		]
-	var problems := PackedStringArray()
-	if not _is_unit(world.global_scale):
+	var problems := WorldSettings.problems_of(world)
+	problems.append_array(PlaceChecks.of(world))
+	if problems.is_empty() and not _is_unit(world.global_scale):
 		(
 			problems
 			. append(
@@ -163,9 +168,16 @@ static func of_world(world: HapticWorld2D) -> PackedStringArray:
 				)
 			)
 		)
-	if not _has_scale(world):
+	if world.global_transform.is_finite() and not PlaceChecks.can_measure(world):
 		problems.append(
-			"pixels_per_meter is %s, must be above 0; 4000 is usual." % world.pixels_per_meter
+			(
+				"pixels_per_meter is %s, must lie between %s and %s; 4000 is usual."
+				% [
+					world.pixels_per_meter,
+					PlaceChecks.LEAST_PIXELS_PER_METER,
+					PlaceChecks.MOST_PIXELS_PER_METER
+				]
+			)
 		)
 	if world.get_tool() == null:
 		problems.append("The world has no tool. Add a HapticTool2D with a collision shape.")
@@ -192,10 +204,6 @@ static func _without_twins(
 		if not "shapes is empty" in text:
 			left.append(text)
 	return left
-
-
-static func _has_scale(world: HapticWorld2D) -> bool:
-	return is_finite(world.pixels_per_meter) and world.pixels_per_meter > 0.0
 
 
 static func _is_unit(scale: Vector2) -> bool:

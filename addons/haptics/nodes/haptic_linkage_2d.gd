@@ -162,7 +162,8 @@ func tell_problems() -> void:
 func get_rest(link: HapticLink2D) -> Transform2D:
 	var key := link.get_instance_id()
 	var above := link.get_parent().get_instance_id()
-	if _parents.get(key, 0) != above:
+	# what was no place is looked at again
+	if _parents.get(key, 0) != above or not _rest[key].is_finite():
 		_parents[key] = above
 		_rest[key] = link.transform
 		_coordinates.erase(key)
@@ -173,7 +174,7 @@ func get_rest(link: HapticLink2D) -> Transform2D:
 ## Puts the links where the native side has them.
 func place(states: PackedFloat64Array, units: HapticUnits) -> void:
 	var links := get_links()
-	if states.size() != links.size() * LinkageReader.STATE:
+	if states.size() != links.size() * LinkageReader.STATE or not global_transform.is_finite():
 		return
 	for i: int in links.size():
 		var at := i * LinkageReader.STATE
@@ -194,6 +195,8 @@ func _start_free(world: HapticWorld2D) -> bool:
 	if get_carrier() != null or not free.start():
 		_wait = _PAUSE
 		_warnings.say()
+		for link: HapticLink2D in get_links():
+			link.tell_problems()
 		return false
 	_free = free
 	_wait = 0

@@ -26,5 +26,10 @@ func _notification(what: int) -> void:
 	_warnings.follow(what)
 
 
+## Pushes an error for every problem that was not told before.
+func tell_problems() -> void:
+	_warnings.say()
+
+
 func _get_configuration_warnings() -> PackedStringArray:
 	return _warnings.shown()

@@ -245,9 +245,9 @@ func start() -> bool:
 	if get_tool() != null:
 		get_tool().tell_problems()
 	var session := Session.new(self)
-	var problems := session.start()
-	_warnings.say_these(problems)
+	_warnings.say_these(session.start())
 	if not session.native.is_running():
+		_warnings.say()
 		return false
 	_session = session
 	tool_changed.emit(_last_tool, session.tool)

@@ -4,6 +4,11 @@ extends RefCounted
 
 const Gateway := preload("gateway.gd")
 const LinkageReader := preload("../environment/linkage_reader.gd")
+const PlaceChecks := preload("place_checks.gd")
+const Choices := preload("../resources/choices.gd")
+
+# a spring that rests farther away never comes to rest, rad or m
+const _FARTHEST_REST := 1e4
 
 
 ## The linkage as a whole: also what the native side finds wrong with a link, by the link's name.
@@ -42,11 +47,13 @@ static func of_linkage(linkage: HapticLinkage2D) -> PackedStringArray:
 	var world := HapticWorld2D.find_for(linkage)
 	if world == null:
 		return problems + PackedStringArray(["There is no HapticWorld2D in this scene. Add one."])
-	if not linkage.global_scale.is_equal_approx(Vector2.ONE):
-		problems.append(
-			"The scale is %s. Set it to 1 and scale the shapes instead." % linkage.global_scale
-		)
-	if not Gateway.is_available() or world.pixels_per_meter <= 0.0:
+	if not linkage.global_transform.is_finite():
+		return problems + PlaceChecks.of(linkage)
+	problems.append_array(PlaceChecks.of_shape(linkage))
+	# the links say it
+	if links.any(func(l: HapticLink2D) -> bool: return not _of_joint(l).is_empty()):
+		return problems
+	if not Gateway.is_available() or not PlaceChecks.can_measure(world):
 		return problems
 	var units := HapticUnits.new(world.pixels_per_meter, world.global_transform)
 	var description := LinkageReader.describe(linkage, links[-1], units, problems)
@@ -72,7 +79,45 @@ static func of_link(link: HapticLink2D) -> PackedStringArray:
 		problems.append(
 			"The link has no shape. Add a CollisionShape2D or CollisionPolygon2D as a child."
 		)
-	if link.has_limits and link.lower_limit >= link.upper_limit:
+	# the linkage says it of itself
+	if link.get_linkage().global_transform.is_finite():
+		problems.append_array(_of_joint(link))
+	return problems
+
+
+# the figures that the native side sees turned about, or not at all
+static func _of_joint(link: HapticLink2D) -> PackedStringArray:
+	var problems := Choices.problem("joint", link.joint, HapticLink2D.Joint)
+	var rest := link.get_linkage().get_rest(link)
+	if not rest.is_finite():
+		problems.append(
+			(
+				"It stands at %s, turned by %s rad, which is no place. Give it a real one."
+				% [link.position, link.rotation]
+			)
+		)
+	elif not rest.get_scale().is_equal_approx(Vector2.ONE) or not is_zero_approx(rest.get_skew()):
+		problems.append(
+			(
+				"The scale is %s and the skew %s rad. Set them to 1 and 0, and change the shapes instead."
+				% [rest.get_scale(), rest.get_skew()]
+			)
+		)
+	if link.joint == HapticLink2D.Joint.FIXED:
+		return problems
+	if not absf(link.spring_rest) <= _FARTHEST_REST:
+		problems.append(
+			(
+				"spring_rest is %s, must lie within %s either way. 0 is where the scene drew it."
+				% [link.spring_rest, _FARTHEST_REST]
+			)
+		)
+	if not link.has_limits:
+		return problems
+	for limit: StringName in [&"lower_limit", &"upper_limit"]:
+		if is_nan(link.get(limit) as float):
+			problems.append("%s is nan. Give it a number, or take has_limits away." % limit)
+	if link.lower_limit >= link.upper_limit:
 		problems.append(
 			(
 				"lower_limit is %s and upper_limit %s. Make the lower one smaller."
@@ -82,9 +127,13 @@ static func of_link(link: HapticLink2D) -> PackedStringArray:
 	return problems
 
 
-# "links[2].mass is 0" and "link 2" name no node
+# "links[2].mass is 0" and "link 2" name no node, "joint.damping" no property
 static func _with_names(text: String, links: Array[HapticLink2D]) -> String:
 	for i: int in range(links.size() - 1, -1, -1):
+		text = text.replace("joint.damping", "joint_damping").replace(
+			"joint.friction", "joint_friction"
+		)
+		text = text.replace("joint.limit_", "limit_").replace("joint.spring_", "spring_")
 		text = text.replace("links[%d]." % i, "%s." % links[i].name)
 		text = text.replace("link %d " % i, "%s " % links[i].name)
 		text = text.replace("link %d:" % i, "%s:" % links[i].name)

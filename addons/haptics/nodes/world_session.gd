@@ -8,6 +8,7 @@ const Neighborhood := preload("../environment/neighborhood.gd")
 const TouchSignals := preload("touch_signals.gd")
 const Reach := preload("../environment/reach.gd")
 const WorldSettings := preload("world_settings.gd")
+const PlaceChecks := preload("place_checks.gd")
 const ToolReader := preload("../environment/tool_reader.gd")
 const HeldBody := preload("held_body.gd")
 const LinkageReader := preload("../environment/linkage_reader.gd")
@@ -57,10 +58,11 @@ func start() -> PackedStringArray:
 	# what the world, the tool and their checks say is not said twice
 	var unattended := _world.is_unattended()
 	tool = _world.get_tool()
-	if tool == null or _world.device == null or units.pixels_per_meter <= 0.0:
+	if tool == null or _world.device == null or not PlaceChecks.can_measure(_world):
 		return []
 	var problems := PackedStringArray()
-	var wrong := native.configure(_world.to_settings())
+	var wrong := WorldSettings.problems_of(_world)
+	wrong.append_array(native.configure(_world.to_settings()))
 	wrong.append_array(native.set_device(_world.device.to_settings(unattended)))
 	wrong.append_array(native.set_tool(_describe_tool(problems)))
 	if not wrong.is_empty():
@@ -115,6 +117,7 @@ func tick(seconds: float) -> PackedStringArray:
 	native.refresh()
 	state = native.get_state()
 	var impulses := native.take_impulses()
+	problems.append_array(PlaceChecks.of(_world))
 	units.set_frame(_world.global_transform)
 	problems.append_array(
 		neighborhood.publish(
@@ -223,8 +226,12 @@ func _place() -> PackedStringArray:
 	var wanted := WorldSettings.placement(_world)
 	if wanted == _placement:
 		return []
-	_placement = wanted
-	return native.place(wanted)
+	# what is no number differs from itself, and is looked at until it is one
+	var problems := WorldSettings.problems_of(_world)
+	if problems.is_empty():
+		_placement = wanted
+		problems = native.place(wanted)
+	return problems
 
 
 ## The hand takes another link of the linkage that is held. False, after errors that say why, when

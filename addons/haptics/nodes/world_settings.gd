@@ -2,6 +2,8 @@
 extends RefCounted
 ## The settings of a world as the native side takes them.
 
+const Choices := preload("../resources/choices.gd")
+
 ## Metadata of a world that is sent its whole scene and runs every stage of its step, whether there
 ## is something to do or not: to see what is saved otherwise.
 const WHOLE_SCENE := &"haptic_whole_scene"
@@ -12,6 +14,10 @@ const _CONTACTS: PackedStringArray = ["penalty_impulse", "penalty"]
 ## Names of the integrators, in the order of the enum.
 const INTEGRATORS: PackedStringArray = ["linearly_implicit", "semi_implicit", "exact"]
 const _METHODS: PackedStringArray = ["poisson", "mass_weighted", "paper"]
+# rad, as the native side has it
+const _MOST_ROTATION := 10.0
+const _MOST_TURN := 10000.0
+const _TOO_FAR := "%s is %s rad, must lie within %s rad either way. 0 is the default."
 
 
 static func of(world: HapticWorld2D) -> Dictionary:
@@ -26,7 +32,7 @@ static func of(world: HapticWorld2D) -> Dictionary:
 		"rate": world.rate,
 		"priority": HapticSettings.number(HapticSettings.PRIORITY),
 		"cpu": HapticSettings.number(HapticSettings.PROCESSOR),
-		"coupling": _COUPLINGS[world.coupling],
+		"coupling": Choices.name_of(_COUPLINGS, world.coupling),
 		"coupling_stiffness": _axes(world.coupling_stiffness, world.coupling_rotation_stiffness),
 		"coupling_damping": _axes(world.coupling_damping, world.coupling_rotation_damping),
 		"velocity_window": world.velocity_window,
@@ -36,16 +42,30 @@ static func of(world: HapticWorld2D) -> Dictionary:
 		"observer_noise": world.observer_noise,
 		"observer_mass_error": world.observer_mass_error,
 		"mapping_scale": world.mapping_scale,
-		"mapping_rotation": -world.mapping_rotation,
+		"mapping_rotation": -_sound(world.mapping_rotation, _MOST_ROTATION),
 		"arm_at_start": world.arm_at_start,
 		"hold_at_start": world.hold_at_start,
-		"contact": _CONTACTS[world.contact],
-		"integrator": INTEGRATORS[world.integrator],
-		"collision_method": _METHODS[world.collision_method],
+		"contact": Choices.name_of(_CONTACTS, world.contact),
+		"integrator": Choices.name_of(INTEGRATORS, world.integrator),
+		"collision_method": Choices.name_of(_METHODS, world.collision_method),
 		"collision_speed": world.collision_speed,
 		"whole_scene": world.has_meta(WHOLE_SCENE),
 		"safety": limits.to_settings(clampf(heaviest, 0.001, 100.0), clampf(largest, 1e-6, 10.0)),
 	}
+
+
+## What is wrong with choices and with angles, in words. Angles are told as the scene has them,
+## clockwise, and the native side would tell their opposites.
+static func problems_of(world: HapticWorld2D) -> PackedStringArray:
+	var problems := Choices.problem("mode", world.mode, HapticWorld2D.Mode)
+	problems += Choices.problem(
+		"gravity_source", world.gravity_source, HapticWorld2D.GravitySource
+	)
+	if _sound(world.mapping_rotation, _MOST_ROTATION) != world.mapping_rotation:
+		problems.append(_TOO_FAR % ["mapping_rotation", world.mapping_rotation, _MOST_ROTATION])
+	if _sound(world.mapping_turn, _MOST_TURN) != world.mapping_turn:
+		problems.append(_TOO_FAR % ["mapping_turn", world.mapping_turn, _MOST_TURN])
+	return problems
 
 
 ## How the handle holds the tool: mapping, clutch and turn, for [method HapticServer.world_place].
@@ -56,6 +76,11 @@ static func placement(world: HapticWorld2D) -> Dictionary:
 		"clutched": world.clutched,
 		"turn": -world.mapping_turn,
 	}
+
+
+# 0 for an angle that is no number or beyond `most`
+static func _sound(angle: float, most: float) -> float:
+	return angle if absf(angle) <= most else 0.0
 
 
 static func _axes(along: float, around: float) -> PackedFloat64Array:

@@ -17,6 +17,8 @@ enum ArmSide {
 	RIGHT,
 }
 
+const Choices := preload("choices.gd")
+
 const _SIDES: PackedStringArray = ["left", "right"]
 
 @export_group("Motor axes")
@@ -73,9 +75,9 @@ func to_settings() -> Dictionary:
 		"left_distal_length": left_distal_length,
 		"right_proximal_length": right_proximal_length,
 		"right_distal_length": right_distal_length,
-		"left_elbow": _SIDES[left_elbow],
-		"right_elbow": _SIDES[right_elbow],
-		"end_side": _SIDES[end_side],
+		"left_elbow": Choices.name_of(_SIDES, left_elbow),
+		"right_elbow": Choices.name_of(_SIDES, right_elbow),
+		"end_side": Choices.name_of(_SIDES, end_side),
 		"proximal_mass": proximal_mass,
 		"proximal_center": proximal_center,
 		"proximal_inertia": proximal_inertia,

@@ -42,6 +42,7 @@ enum Direction {
 }
 
 const Gateway := preload("../nodes/gateway.gd")
+const Choices := preload("choices.gd")
 
 const _PRESETS: Dictionary[Preset, String] = {
 	Preset.UBC_TWIN_PANTOGRAPH: "ubc_twin_pantograph",
@@ -146,7 +147,7 @@ func get_motor_count() -> int:
 func to_settings() -> Dictionary:
 	var settings := {
 		"name": _label(),
-		"kind": _KINDS[kind],
+		"kind": Choices.name_of(_KINDS, kind),
 		"first_attachment": PackedFloat64Array([first_attachment.x, first_attachment.y]),
 		"torque_limit": torque_limit,
 		"torque_constant": torque_constant,
@@ -201,7 +202,8 @@ func _label() -> String:
 func _signs() -> PackedFloat64Array:
 	var signs := PackedFloat64Array()
 	for direction: Direction in encoder_directions:
-		signs.append(_SIGNS[direction])
+		# what is no direction is refused by the native side
+		signs.append(_SIGNS[direction] if direction in Direction.values() else 0.0)
 	return signs
 
 

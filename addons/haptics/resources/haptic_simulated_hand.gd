@@ -113,7 +113,7 @@ const _NAMES: Dictionary[Kind, String] = {
 
 ## As the native side takes it.
 func to_settings() -> Dictionary:
-	var settings := {"kind": _NAMES[kind], "mass": mass, "inertia": inertia}
+	var settings := {"kind": _NAMES.get(kind, str(kind)), "mass": mass, "inertia": inertia}
 	if kind == Kind.CONSTANT_FORCE:
 		settings["force"] = PackedFloat64Array([force.x, -force.y, -torque])
 		settings["start_time"] = start_time

@@ -23,6 +23,8 @@ enum EncoderModel {
 	JOINT,
 }
 
+const Choices := preload("choices.gd")
+
 const _INERTIA_MODELS: PackedStringArray = ["constant", "linkage"]
 const _ENCODER_MODELS: PackedStringArray = ["exact", "handle", "joint"]
 
@@ -152,14 +154,14 @@ func to_settings(unattended: bool) -> Dictionary:
 		"kind": "simulated_pantograph",
 		"geometry": _linkage(),
 		"gravity": PackedFloat64Array([gravity.x, -gravity.y]),
-		"inertia_model": _INERTIA_MODELS[inertia_model],
+		"inertia_model": Choices.name_of(_INERTIA_MODELS, inertia_model),
 		"mass": mass,
 		"inertia": inertia,
 		"viscous_friction": viscous_friction,
 		"rotation_viscous_friction": rotation_viscous_friction,
 		"coulomb_friction": coulomb_friction,
 		"rotation_coulomb_friction": rotation_coulomb_friction,
-		"encoder_model": _ENCODER_MODELS[encoder_model],
+		"encoder_model": Choices.name_of(_ENCODER_MODELS, encoder_model),
 		"encoder_resolution": PackedFloat64Array([encoder_step, encoder_step, encoder_angle_step]),
 		"command_delay": command_delay,
 		"command_delay_steps": command_delay_steps,
