@@ -2,6 +2,7 @@
 
 #include <iterator>
 #include <sstream>
+#include <utility>
 
 namespace haptics {
 
@@ -23,8 +24,19 @@ bool FigureCheck::range(const char* field, double value, double minimum, double 
     const bool finite = std::isfinite(value);
     if (finite && value >= minimum && value <= maximum)
         return true;
-    errors_.push_back({finite ? FigureProblem::out_of_range : FigureProblem::not_finite, prefix_ + field,
-                       value, minimum, maximum, unit, remedy});
+    FigureError error{finite ? FigureProblem::out_of_range : FigureProblem::not_finite,
+                      prefix_ + field,
+                      value,
+                      minimum,
+                      maximum,
+                      unit,
+                      remedy};
+    // one property may stand for several directions
+    const std::string text = error.message();
+    for (const FigureError& said : errors_)
+        if (said.message() == text)
+            return false;
+    errors_.push_back(std::move(error));
     return false;
 }
 

@@ -67,7 +67,7 @@ func test_a_scale_out_of_range_is_named_and_changes_nothing() -> void:
 	await _press()
 	_world.mapping_scale = 0.0
 	await wait_physics_frames(2)
-	assert_push_error("mapping.scale is 0")
+	assert_push_error("mapping_scale is 0")
 	assert_true(_world.is_running())
 	_world.mapping_scale = 1.0
 	await wait_physics_frames(2)

@@ -50,7 +50,7 @@ static func of(world: HapticWorld2D) -> Dictionary:
 		"collision_method": Choices.name_of(_METHODS, world.collision_method),
 		"collision_speed": world.collision_speed,
 		"whole_scene": world.has_meta(WHOLE_SCENE),
-		"safety": limits.to_settings(clampf(heaviest, 0.001, 100.0), clampf(largest, 1e-6, 10.0)),
+		"safety": limits.to_settings(_within(heaviest, 0.001, 100.0), _within(largest, 1e-6, 10.0)),
 	}
 
 
@@ -76,6 +76,11 @@ static func placement(world: HapticWorld2D) -> Dictionary:
 		"clutched": world.clutched,
 		"turn": -world.mapping_turn,
 	}
+
+
+# the least for what is no number: whose figure it is says so
+static func _within(figure: float, least: float, most: float) -> float:
+	return clampf(figure, least, most) if is_finite(figure) else least
 
 
 # 0 for an angle that is no number or beyond `most`

@@ -32,11 +32,11 @@ bool usable(const HandPlacement& p) {
 
 std::vector<FigureError> validate(const HandPlacement& p) {
     FigureCheck check;
-    check.range("mapping.scale", p.mapping.scale, 0.01, 100.0, "m/m",
+    check.range("mapping_scale", p.mapping.scale, 0.01, 100.0, "m/m",
                 "1 shows the device's motion at its true size.");
-    check.range("mapping.rotation", p.mapping.rotation, -10.0, 10.0, "rad", "0 is the default.");
+    check.range("mapping_rotation", p.mapping.rotation, -10.0, 10.0, "rad", "0 is the default.");
     for (int i = 0; i < 3; ++i)
-        check.range("mapping.offset", p.mapping.offset(i), -100.0, 100.0, "m",
+        check.range("mapping_offset", p.mapping.offset(i), -100.0, 100.0, "m",
                     "Keep the workspace near the world node.");
     check.range("turn", p.turn, -k_most_turn, k_most_turn, "rad", "0 leaves the angle to the handle.");
     return check.take();

@@ -11,10 +11,11 @@ std::vector<FigureError> validate(const SessionSettings& s) {
                 "1000 Hz is the default; above 10000 Hz only in lock-step.");
     check.append(validate(HandPlacement{s.mapping, false, 0.0}));
     for (int i = 0; i < 3; ++i) {
-        check.range("coupling.stiffness", s.gains.stiffness(i), 0.0, 1e9, "N/m",
-                    "0 chooses it from device mass and rate.");
-        check.range("coupling.damping", s.gains.damping(i), 0.0, 1e9, "N s/m",
-                    "0 chooses it from device mass and rate.");
+        const bool turns = i == 2;
+        check.range(turns ? "coupling_rotation_stiffness" : "coupling_stiffness", s.gains.stiffness(i), 0.0,
+                    1e9, turns ? "N m/rad" : "N/m", "0 chooses it from device mass and rate.");
+        check.range(turns ? "coupling_rotation_damping" : "coupling_damping", s.gains.damping(i), 0.0, 1e9,
+                    turns ? "N m s/rad" : "N s/m", "0 chooses it from device mass and rate.");
         check.range("reading_error", s.reading_error(i), 0.0, 0.1, "m", "Half an encoder step.");
     }
     check.range("device_patience", s.device_patience, 0.002, 1.0, "s", "0.02 is the default.");
@@ -25,8 +26,8 @@ std::vector<FigureError> validate(const SessionSettings& s) {
     check.range("observer.bandwidth", s.observer.bandwidth, 0.0, 1e5, "rad/s", "0 chooses it.");
     check.range("observer.rotation_bandwidth", s.observer.rotation_bandwidth, 0.0, 1e5, "rad/s",
                 "0 chooses it.");
-    check.range("observer.noise", s.observer.noise, 0.001, 10.0, "N", "0.05 is the default.");
-    check.range("observer.mass_error", s.observer.mass_error, 0.0, 0.5, "", "0.25 is the default.");
+    check.range("observer_noise", s.observer.noise, 0.001, 10.0, "N", "0.05 is the default.");
+    check.range("observer_mass_error", s.observer.mass_error, 0.0, 0.5, "", "0.25 is the default.");
     check.range("hidden_inertia", s.hidden_inertia, 0.0, 0.95, "", "0 leaves all of it to the hand.");
     check.range("device_delay", s.device_delay, 0.0, 1.0, "s", "Most devices add less than 0.001 s.");
     return check.take();

@@ -8,19 +8,24 @@ namespace {
 
 using Faults = std::vector<LinkageFault>;
 
+/// Largest figure of a joint or a link, in SI units.
+constexpr double k_most = 1e12;
+
 void need_finite(Faults& faults, int link, const char* property, double value) {
     if (!std::isfinite(value)) {
         faults.push_back({LinkageError::not_finite, link, value, property});
     }
 }
 
-/// Finite and > 0 (or >= 0 with `zero_allowed`).
+/// Finite and > 0 (or >= 0 with `zero_allowed`), at most k_most.
 void need_positive(Faults& faults, LinkageError error, int link, const char* property, double value,
                    bool zero_allowed) {
     if (!std::isfinite(value)) {
         faults.push_back({LinkageError::not_finite, link, value, property});
     } else if (value < 0.0 || (value == 0.0 && !zero_allowed)) {
         faults.push_back({error, link, value, property});
+    } else if (value > k_most) {
+        faults.push_back({LinkageError::too_large, link, value, property});
     }
 }
 
@@ -110,6 +115,8 @@ const char* remedy(LinkageError error) {
     case LinkageError::friction_negative:
     case LinkageError::spring_stiffness_negative:
         return "use 0 or more";
+    case LinkageError::too_large:
+        return "use at most 1e12";
     case LinkageError::friction_band_not_positive:
         return "use a speed above 0, such as 0.001";
     }

@@ -12,13 +12,12 @@ std::vector<FigureError> validate(const Surface& s) {
     };
     range("stiffness", s.stiffness, k_most, "N/m", "The paper's wall has 15000 N/m.");
     range("damping", s.damping, k_most, "N s/m", "The paper's wall has 20 N s/m.");
-    range("static_friction", s.static_friction, 100.0, "(no unit)", "Most materials lie between 0.1 and 1.");
-    if (range("dynamic_friction", s.dynamic_friction, 100.0, "(no unit)",
-              "Most materials lie between 0.1 and 1.") &&
+    range("static_friction", s.static_friction, 100.0, "", "Most materials lie between 0.1 and 1.");
+    if (range("dynamic_friction", s.dynamic_friction, 100.0, "", "Most materials lie between 0.1 and 1.") &&
         s.dynamic_friction > s.static_friction)
-        check.inconsistent("dynamic_friction", s.dynamic_friction, 0.0, s.static_friction, "(no unit)",
+        check.inconsistent("dynamic_friction", s.dynamic_friction, 0.0, s.static_friction, "",
                            "Make it at most static_friction: sliding never holds better than sticking.");
-    check.range("restitution", s.restitution, 0.0, 1.0, "(no unit)", "0 stops dead, 1 loses nothing.");
+    check.range("restitution", s.restitution, 0.0, 1.0, "", "0 stops dead, 1 loses nothing.");
     return check.take();
 }
 
@@ -52,8 +51,8 @@ std::vector<FigureError> validate(const Model& model) {
         check_linkage(model.tool, check);
     else
         check_rigid(model.tool, check);
-    check.range("grip.x", model.tool.grip.point.x(), -10.0, 10.0, "m", "Put the grip on the tool.");
-    check.range("grip.y", model.tool.grip.point.y(), -10.0, 10.0, "m", "Put the grip on the tool.");
+    check.range("grip_point.x", model.tool.grip.point.x(), -10.0, 10.0, "m", "Put the grip on the tool.");
+    check.range("grip_point.y", model.tool.grip.point.y(), -10.0, 10.0, "m", "Put the grip on the tool.");
     check.range("pieces", static_cast<double>(model.tool.shape.piece_count), 1.0,
                 static_cast<double>(k_max_pieces), "shapes", "Give the tool at least one collision shape.");
     check.range("collision_speed", model.settings.collision_speed, 1e-6, 10.0, "m/s",

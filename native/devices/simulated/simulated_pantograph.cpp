@@ -69,8 +69,8 @@ std::vector<FigureError> validate(const SimulatedPantographOptions& options) {
                     "Use 0 for a device that lies flat.");
     for (int axis = 0; axis < 3; ++axis) {
         const char* unit = axis == 2 ? "rad" : "m";
-        check.range("encoder_resolution", options.encoder_resolution[axis], 0.0, 0.1, unit,
-                    "Use 1e-6 to 1e-4, or 0 for none.");
+        check.range(axis == 2 ? "encoder_angle_step" : "encoder_step", options.encoder_resolution[axis], 0.0,
+                    0.1, unit, "Use 1e-6 to 1e-4, or 0 for none.");
         check.range("noise", options.noise[axis], 0.0, 0.1, unit, "Use 0 for none.");
     }
     check.range("command_delay_steps", options.command_delay_steps, 0.0, 1000.0, "steps", "Use 0 for none.");

@@ -195,11 +195,18 @@ BodySpec read_body(const Dictionary& from, const std::string& place, const Surfa
                                {"movable", BodyKind::movable},
                                {"tool", BodyKind::tool}});
     spec.center = r.vec2("center", Vec2::Zero());
+    FigureCheck figures(place);
+    // one that is nowhere would make every corner of the shapes wrong
+    for (int i = 0; i < 2; ++i)
+        if (!figures.range(i == 0 ? "center_of_mass.x" : "center_of_mass.y", spec.center(i), -1e5, 1e5, "m",
+                           "Put it on the body."))
+            spec.center(i) = 0.0;
     spec.body.surface = read_surface(r.dictionary("surface"), place + "surface.", fallback, problems);
-    const double rounding = r.number("rounding", 0.0);
-    if (!std::isfinite(rounding) || rounding < 0.0)
-        problems.add(place + "rounding is " + std::to_string(rounding) + " m, must be 0 or more.");
-    ShapeContext c{spec.center, std::max(rounding, 0.0), problems, spec.pieces, 0.0, 0.0};
+    double rounding = r.number("rounding", 0.0);
+    if (!figures.range("rounding", rounding, 0.0, 10.0, "m", "0 leaves the corners sharp."))
+        rounding = 0.0;
+    problems.add(figures.take());
+    ShapeContext c{spec.center, rounding, problems, spec.pieces, 0.0, 0.0};
     const Array shapes = r.array("shapes");
     for (int64_t i = 0; i < shapes.size(); ++i) {
         if (shapes[i].get_type() != Variant::DICTIONARY) {
@@ -220,8 +227,12 @@ BodySpec read_body(const Dictionary& from, const std::string& place, const Surfa
     if (has_mass) {
         FigureCheck check(place);
         const bool has_shape = problems.none();
-        const bool heavy = check.range("mass", spec.body.mass, 1e-6, 1e4, "kg",
-                                       "Give it a mass; 0.1 kg suits what a desktop device moves.");
+        const bool dense =
+            check.range("density", density, 0.0, 1e9, "kg/m^2", "0 leaves the mass as it is given.");
+        const bool heavy = dense && check.range("mass", spec.body.mass, 1e-6, 1e4, "kg",
+                                                density > 0.0 ? "It is density times the area of the shapes."
+                                                              : "Give it a mass; 0.1 kg suits what a desktop "
+                                                                "device moves.");
         const bool computed = spec.body.inertia == 0.0;
         if (computed)
             spec.body.inertia = spec.body.mass * c.spread();

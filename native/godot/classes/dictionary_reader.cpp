@@ -1,6 +1,7 @@
 #include <haptics/classes/dictionary_reader.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace haptics {
 
@@ -26,6 +27,12 @@ Variant DictionaryReader::take(const char* key, const std::vector<Variant::Type>
 double DictionaryReader::number(const char* key, double fallback) {
     const Variant v = take(key, {Variant::INT, Variant::FLOAT}, "a number");
     return v.get_type() == Variant::NIL ? fallback : v.to<double>();
+}
+
+int DictionaryReader::integer(const char* key, int fallback) {
+    constexpr double k_most = 2e9;
+    const double given = number(key, fallback);
+    return std::isnan(given) ? 0 : static_cast<int>(std::clamp(given, -k_most, k_most));
 }
 
 bool DictionaryReader::flag(const char* key, bool fallback) {

@@ -64,7 +64,12 @@ void HapticWorld::set_tool(const Dictionary& tool, Problems& problems) {
     const Pose start = r.vec3("start", Vec3::Zero());
     const Twist rates = r.vec3("start_velocity", Vec3::Zero());
     r.finish();
-    if (!start.allFinite())
+    if (!rates.allFinite())
+        problems.add("tool.start_velocity is (" + std::to_string(rates.x()) + ", " +
+                     std::to_string(rates.y()) + ") m/s, " + std::to_string(rates.z()) +
+                     " rad/s, which is not a number. Give it a real velocity.");
+    constexpr double k_farthest = 1e5;
+    if (!start.allFinite() || start.head<2>().cwiseAbs().maxCoeff() > k_farthest)
         problems.add("The tool stands at (" + std::to_string(start.x()) + ", " + std::to_string(start.y()) +
                      ") m, turned by " + std::to_string(start.z()) +
                      " rad, which is no place. Give it a real position and rotation.");
@@ -176,7 +181,8 @@ void HapticWorld::begin(bool realtime, double record_seconds, Problems& problems
     if (!device_options_)
         problems.add("The world has no device. Set a HapticDevice resource.");
     if (!std::isfinite(record_seconds) || record_seconds < 0.0 || record_seconds > 3600.0)
-        problems.add("A recording of " + seconds_text(record_seconds) + " is not possible; at most 3600 s.");
+        problems.add("record_seconds is " + seconds_text(record_seconds) +
+                     ", must lie between 0 and 3600 s. 0 records nothing.");
     if (realtime && !is_valid_rate(settings_.loop.rate_hz))
         problems.add("The rate is " + std::to_string(settings_.loop.rate_hz) +
                      " Hz; in real time it must lie between 250 and 10000 Hz.");

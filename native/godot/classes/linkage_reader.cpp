@@ -7,6 +7,7 @@
 #include <haptics/core/local_model/validate.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace haptics {
@@ -33,6 +34,15 @@ JointSpec read_joint(DictionaryReader& r) {
     joint.spring_stiffness = r.number("spring_stiffness", joint.spring_stiffness);
     joint.spring_rest = r.number("spring_rest", joint.spring_rest);
     return joint;
+}
+
+// 0, and a problem, for what is no number: the loop would start from 0 without a word
+double read_finite(DictionaryReader& r, const char* key, Problems& problems) {
+    const double given = r.number(key, 0.0);
+    if (std::isfinite(given))
+        return given;
+    problems.add(r.place() + key + " is " + std::to_string(given) + ", which is not a number. Give it one.");
+    return 0.0;
 }
 
 // appends the shapes of one link, and says when they are too many
@@ -99,6 +109,9 @@ LinkageTool read_linkage_tool(const Dictionary& from, Problems& problems) {
     spec.base = r.flag("grounded", true) ? BaseKind::grounded : BaseKind::floating;
     start.base = r.vec3("base", Vec3::Zero());
     start.base_velocity = r.vec3("base_velocity", Vec3::Zero());
+    if (!start.base.allFinite() || !start.base_velocity.allFinite())
+        problems.add("tool.base or tool.base_velocity is not a number. Give the first link a real place and "
+                     "velocity.");
     const Array links = r.array("links");
     if (links.size() > k_max_links) {
         problems.add("The linkage has " + std::to_string(links.size()) + " links, at most " +
@@ -120,8 +133,8 @@ LinkageTool read_linkage_tool(const Dictionary& from, Problems& problems) {
         l.inertia = body.body.inertia;
         l.center = body.center;
         l.joint = read_joint(link);
-        start.coordinate.push_back(link.number("coordinate", 0.0));
-        start.rate.push_back(link.number("rate", 0.0));
+        start.coordinate.push_back(read_finite(link, "coordinate", problems));
+        start.rate.push_back(read_finite(link, "rate", problems));
         link.finish();
         spec.links.push_back(l);
         centers.push_back(body.center);

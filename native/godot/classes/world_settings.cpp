@@ -114,8 +114,8 @@ DeviceOptions read_simulated_pantograph(const Dictionary& from, Problems& proble
         {{"exact", EncoderModel::exact}, {"handle", EncoderModel::handle}, {"joint", EncoderModel::joint}});
     o.encoder_resolution = r.vec3("encoder_resolution", o.encoder_resolution);
     o.command_delay = r.number("command_delay", o.command_delay);
-    o.command_delay_steps = static_cast<int>(r.number("command_delay_steps", o.command_delay_steps));
-    o.reading_delay_steps = static_cast<int>(r.number("reading_delay_steps", o.reading_delay_steps));
+    o.command_delay_steps = r.integer("command_delay_steps", o.command_delay_steps);
+    o.reading_delay_steps = r.integer("reading_delay_steps", o.reading_delay_steps);
     o.limit_motors = r.flag("limit_motors", o.limit_motors);
     o.bounded = r.flag("bounded", o.bounded);
     o.measures_force = r.flag("measures_force", o.measures_force);
@@ -172,9 +172,13 @@ WorldSettings read_world_settings(const Dictionary& from, Problems& problems) {
     WorldSettings w;
     DictionaryReader r(from, "", problems);
     w.loop.rate_hz = r.number("rate", w.loop.rate_hz);
-    w.loop.priority = static_cast<int>(r.number("priority", w.loop.priority));
-    w.loop.cpu = static_cast<int>(r.number("cpu", w.loop.cpu));
-    w.session.step = w.loop.rate_hz > 0.0 ? 1.0 / w.loop.rate_hz : 0.0;
+    w.loop.priority = r.integer("priority", w.loop.priority);
+    w.loop.cpu = r.integer("cpu", w.loop.cpu);
+    // a rate that has no period is told as it was given
+    FigureCheck check;
+    if (check.range("rate", w.loop.rate_hz, 250.0, 100000.0, "Hz",
+                    "1000 Hz is the default; above 10000 Hz only in lock-step."))
+        w.session.step = 1.0 / w.loop.rate_hz;
     w.session.coupling = r.choice("coupling", w.session.coupling,
                                   {{"four_channel", Coupling::four_channel},
                                    {"virtual_coupling", Coupling::virtual_coupling},
@@ -184,7 +188,7 @@ WorldSettings read_world_settings(const Dictionary& from, Problems& problems) {
     w.session.mapping.scale = r.number("mapping_scale", w.session.mapping.scale);
     w.session.mapping.rotation = r.number("mapping_rotation", w.session.mapping.rotation);
     w.session.mapping.offset = r.vec3("mapping_offset", w.session.mapping.offset);
-    w.session.velocity_window = static_cast<int>(r.number("velocity_window", w.session.velocity_window));
+    w.session.velocity_window = r.integer("velocity_window", w.session.velocity_window);
     w.session.observer.enabled = r.flag("observer", w.session.observer.enabled);
     w.session.observer.noise = r.number("observer_noise", w.session.observer.noise);
     w.session.observer.mass_error = r.number("observer_mass_error", w.session.observer.mass_error);
@@ -210,7 +214,6 @@ WorldSettings read_world_settings(const Dictionary& from, Problems& problems) {
     w.safety = read_safety(r.dictionary("safety"), problems);
     r.finish();
     problems.add(validate(w.session));
-    FigureCheck check;
     check.range("collision_speed", w.model.collision_speed, 1e-6, 10.0, "m/s",
                 "Slower approaches than this give no collision impulse; 0.005 m/s is the default.");
     problems.add(check.take());

@@ -55,6 +55,8 @@ TEST_CASE("every fault of a linkage is found, named with its link, and has a rem
         {LinkageError::friction_negative, 1, [](LinkageSpec& s) { s.links[1].joint.friction = -1.0; }},
         {LinkageError::friction_band_not_positive, 1,
          [](LinkageSpec& s) { s.links[1].joint.friction = 1.0, s.links[1].joint.friction_band = 0.0; }},
+        {LinkageError::too_large, 1, [](LinkageSpec& s) { s.links[1].joint.damping = 1e30; }},
+        {LinkageError::too_large, 2, [](LinkageSpec& s) { s.links[2].joint.limit_stiffness = 1e13; }},
         {LinkageError::spring_stiffness_negative, 1,
          [](LinkageSpec& s) { s.links[1].joint.spring_stiffness = -1.0; }},
     };

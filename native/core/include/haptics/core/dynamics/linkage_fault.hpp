@@ -27,6 +27,7 @@ enum class LinkageError : std::uint8_t {
     friction_negative,          ///< friction < 0
     friction_band_not_positive, ///< friction_band <= 0 with friction
     spring_stiffness_negative,  ///< spring_stiffness < 0
+    too_large, ///< a figure of a joint beyond 1e12: no joint has it, and a step loses its digits
 };
 
 /// One fault.

@@ -66,6 +66,8 @@ class DictionaryReader {
         problems_.add(place_ + key + " is \"" + found + "\", must be one of: " + known + ".");
         return fallback;
     }
+    /// A whole number, within 2e9 either way; what is no number is 0.
+    int integer(const char* key, int fallback);
     /// A nested Dictionary; empty when missing.
     godot::Dictionary dictionary(const char* key);
     godot::Array array(const char* key);
