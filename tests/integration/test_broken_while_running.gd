@@ -96,3 +96,11 @@ func test_a_tool_that_the_loop_pressed_into_a_wall_did_not_start_there() -> void
 	add_child_autofree(Scene.gather([_world, _tool, wall]))
 	await wait_physics_frames(20)
 	assert_push_error_count(0)
+
+
+func test_a_center_of_mass_that_breaks_does_not_blind_the_loop() -> void:
+	await _run([Scene.make_wall(Vector2(0, 70), Vector2(800, 40))])
+	for center: Vector2 in [Vector2(NAN, 0.0), Vector2(0.0, 1e30)]:
+		_tool.center_of_mass = center
+		await wait_physics_frames(20)
+		assert_almost_eq(_world.get_contact_force().y, -2.0, 0.1, str(center))

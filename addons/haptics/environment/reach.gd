@@ -14,6 +14,8 @@ const MARGIN := 0.01
 
 # m/s²: what a desktop device gives a light handle (8 N on 0.25 kg)
 const _ACCELERATION := 32.0
+# nothing in a scene is faster, m/s
+const _FASTEST := 1000.0
 # report to the scene, snapshot to the loop: a haptic step each, s
 const _LATENCY := 0.002
 # a longer pause fades the force out; there is no use in looking farther, s
@@ -36,6 +38,9 @@ func note(now: float) -> void:
 ## Reach from the tool's origin, m: `extent` of the tool, `speed` of its origin and the highest that
 ## it may have (m/s), `tick` (s of real time).
 func distance(extent: float, speed: float, top_speed: float, tick: float) -> float:
+	# a center of mass that is nowhere makes no speed
+	if not speed < _FASTEST:
+		speed = top_speed
 	var time := maxf(tick, _pause) + tick + _LATENCY
 	var rise := clampf((top_speed - speed) / _ACCELERATION, 0.0, time)
 	var way := speed * time + _ACCELERATION * rise * (time - 0.5 * rise)
