@@ -147,7 +147,7 @@ void write_rigid_row(const Data& data, const Body& other, bool moves, const Vec2
     drive = moves ? n.dot(velocity_at(other.velocity, p - other.pose.head<2>())) : 0.0;
 }
 
-void assemble_mass(const Model& model, Data& data) {
+void assemble_mass(const Model& model, Data& data, double dt) {
     ContactSystem& s = data.system;
     const int n = s.freedoms;
     s.velocity.setZero(n);
@@ -163,7 +163,7 @@ void assemble_mass(const Model& model, Data& data) {
         s.external(row) = mass * data.gravity.x();
         s.external(row + 1) = mass * data.gravity.y();
     };
-    write_tool_mass(model, data);
+    write_tool_mass(model, data, dt);
     for (int i = 0; i < data.movable_count; ++i) {
         const MovableState& m = data.movable[static_cast<std::size_t>(i)];
         if (m.row == k_none)
@@ -279,7 +279,7 @@ void assemble(const Model& model, Data& data, double dt) {
     ContactSystem& s = data.system;
     s.tool_freedoms = model.tool.freedoms();
     choose_island(data);
-    assemble_mass(model, data);
+    assemble_mass(model, data, dt);
     grip_rows(model, data, s.grip);
     const int n = s.freedoms;
     const int joints = model.tool.articulated && model.tool.linkage.has_passive ? s.tool_freedoms : 0;

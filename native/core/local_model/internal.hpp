@@ -92,8 +92,8 @@ void begin_tool_step(const Model& model, Data& data);
 void end_tool_step(const Model& model, Data& data);
 // poses and velocities of links, held link and kinematics that follow from the state
 void place_tool(const Model& model, Data& data);
-// D, D^-1, joint springs and all forces but those of contacts and coupling
-void write_tool_mass(const Model& model, Data& data);
+// D, D^-1, joint springs and all forces but those of contacts and coupling, for a step of `dt`
+void write_tool_mass(const Model& model, Data& data, double dt);
 // those forces alone, after the velocity changed
 void write_tool_force(const Model& model, Data& data);
 // stretch, stiffness and damping of the joint with that freedom

@@ -22,7 +22,10 @@
 // start would drive an oscillation by the factor 1 + (w h)^2 / 4 a step (a pendulum of 1 rad would pass 1.4
 // rad in 20 s at 1 kHz). It takes D, J, C and gravity at q + h v / 2: half a drift, a kick, half a drift,
 // which is of second order and, for D constant, keeps areas: the map of a spring has the determinant 1. The
-// coordinates are there until the step ends, with `displacement` = -h v / 2 at its start.
+// coordinates are there until the step ends, with `displacement` = -h v / 2 at its start. A push from outside
+// (free_linkage.hpp) may be that of a hit, after which the link moves on with its new velocity: as with the
+// leapfrog the push moves it by h^2 a. With h^2 a / 2 it would stay behind what hit it by half a step and be
+// thrown by the contact spring. Coriolis terms are those of the motion after the push, in this step already.
 
 #include <haptics/core/dynamics/energy.hpp>
 #include <haptics/core/dynamics/jacobian.hpp>
@@ -57,6 +60,16 @@ constexpr double k_unbounded = std::numeric_limits<double>::infinity();
 
 std::size_t index(int i) {
     return static_cast<std::size_t>(i);
+}
+
+// the push from outside of the model as a force on the joints, in `bias`
+void write_push(const Model& model, Data& data) {
+    const LinkageModel& linkage = model.tool.linkage;
+    data.system.bias.setZero(linkage.freedoms);
+    for (int i = 0; i < linkage.link_count; ++i) {
+        const Vec2 center = link_center_pose(linkage, data.linkage, i).head<2>();
+        add_wrench(linkage, data.linkage, i, center, data.push[index(i)], data.system.bias);
+    }
 }
 
 } // namespace
@@ -152,7 +165,7 @@ void end_tool_step(const Model& model, Data& data) {
     place_tool(model, data);
 }
 
-void write_tool_mass(const Model& model, Data& data) {
+void write_tool_mass(const Model& model, Data& data, double dt) {
     ContactSystem& s = data.system;
     const ToolModel& tool = model.tool;
     s.has_joint_springs = false;
@@ -168,13 +181,20 @@ void write_tool_mass(const Model& model, Data& data) {
     }
     const int n = s.tool_freedoms;
     s.start_position = data.linkage.position;
-    s.displacement = -s.ahead * data.linkage.velocity;
+    s.jump.setZero(n);
+    if (data.pushed && s.ahead > 0.0) {
+        factorize(tool.linkage, data.linkage, nullptr, data.factor);
+        write_push(model, data);
+        solve(tool.linkage, data.linkage, data.factor, s.bias, s.jump);
+        s.jump *= dt;
+        data.half_step += s.jump;
+    }
+    s.displacement = s.ahead * (s.jump - data.linkage.velocity);
     if (s.ahead > 0.0) {
-        data.linkage.position -= s.displacement;
+        data.linkage.position += s.ahead * data.linkage.velocity;
         update_kinematics(tool.linkage, data.linkage);
     }
     s.start_velocity = data.linkage.velocity;
-    s.jump.setZero(n);
     s.has_mass = false;
     s.has_inverse = false;
     factorize(tool.linkage, data.linkage, nullptr, data.factor);
@@ -212,12 +232,7 @@ void write_tool_force(const Model& model, Data& data) {
     }
     if (!data.pushed)
         return;
-    const LinkageModel& linkage = model.tool.linkage;
-    s.bias.setZero();
-    for (int i = 0; i < linkage.link_count; ++i) {
-        const Vec2 center = link_center_pose(linkage, data.linkage, i).head<2>();
-        add_wrench(linkage, data.linkage, i, center, data.push[index(i)], s.bias);
-    }
+    write_push(model, data);
     s.tool_weight += s.bias;
     s.external.head(s.tool_freedoms) += s.bias;
 }
