@@ -97,10 +97,13 @@ static func _of_joint(link: HapticLink2D) -> PackedStringArray:
 			)
 		)
 	elif not rest.get_scale().is_equal_approx(Vector2.ONE) or not is_zero_approx(rest.get_skew()):
-		problems.append(
-			(
-				"The scale is %s and the skew %s rad. Set them to 1 and 0, and change the shapes instead."
-				% [rest.get_scale(), rest.get_skew()]
+		(
+			problems
+			. append(
+				(
+					"The scale is %s and the skew %s rad. Set them to 1 and 0, and change the shapes instead."
+					% [rest.get_scale(), rest.get_skew()]
+				)
 			)
 		)
 	if link.joint == HapticLink2D.Joint.FIXED:

@@ -58,9 +58,7 @@ static func of(world: HapticWorld2D) -> Dictionary:
 ## clockwise, and the native side would tell their opposites.
 static func problems_of(world: HapticWorld2D) -> PackedStringArray:
 	var problems := Choices.problem("mode", world.mode, HapticWorld2D.Mode)
-	problems += Choices.problem(
-		"gravity_source", world.gravity_source, HapticWorld2D.GravitySource
-	)
+	problems += Choices.problem("gravity_source", world.gravity_source, HapticWorld2D.GravitySource)
 	if _sound(world.mapping_rotation, _MOST_ROTATION) != world.mapping_rotation:
 		problems.append(_TOO_FAR % ["mapping_rotation", world.mapping_rotation, _MOST_ROTATION])
 	if _sound(world.mapping_turn, _MOST_TURN) != world.mapping_turn:

@@ -10,8 +10,8 @@ using namespace haptics;
 
 namespace {
 
-constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double k_inf = std::numeric_limits<double>::infinity();
+constexpr double k_no_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double k_endless = std::numeric_limits<double>::infinity();
 
 struct Held {
     explicit Held(const Model& m, const LinkageVector& start)
@@ -64,7 +64,7 @@ TEST_SUITE("a model that ran away") {
     TEST_CASE("a rigid tool is put back at rest") {
         for (const Integrator integrator :
              {Integrator::semi_implicit, Integrator::linearly_implicit, Integrator::exact})
-            for (const double absurd : {k_nan, k_inf, -k_inf, 1e12, 1e300}) {
+            for (const double absurd : {k_no_number, k_endless, -k_endless, 1e12, 1e300}) {
                 Model model = shared::box_tool(0.3);
                 model.settings.integrator = integrator;
                 Held held(model, Pose(0.0, 0.1, 0.2));
@@ -79,7 +79,7 @@ TEST_SUITE("a model that ran away") {
     TEST_CASE("so is a linkage") {
         for (const Integrator integrator :
              {Integrator::semi_implicit, Integrator::linearly_implicit, Integrator::exact})
-            for (const double absurd : {k_nan, k_inf, 1e200}) {
+            for (const double absurd : {k_no_number, k_endless, 1e200}) {
                 Model model = shared::linkage_tool(shared::door());
                 model.settings.integrator = integrator;
                 Held held(model, one(0.4));
@@ -90,7 +90,7 @@ TEST_SUITE("a model that ran away") {
     }
 
     TEST_CASE("a movable is put back where its snapshot has it") {
-        for (const double absurd : {k_nan, 1e200}) {
+        for (const double absurd : {k_no_number, 1e200}) {
             Held held(shared::box_tool(0.3), Pose(0.0, 0.1, 0.2));
             MovableState& m = held.data->movable[0];
             m.belief.velocity.x() = absurd;
