@@ -303,6 +303,7 @@ CouplingDesign design_coupling(const LoopFigures& wanted) {
     struct Candidate {
         CouplingDesign design;
         double merit;
+        bool fails{false};
     };
     std::vector<Candidate> candidates;
     for (int i = 0; i < k_grid; ++i)
@@ -320,7 +321,7 @@ CouplingDesign design_coupling(const LoopFigures& wanted) {
                 now.stiffness_5_hz = stiffness_at(loop, 5.0);
                 now.stiffness_30_hz = stiffness_at(loop, 30.0);
                 if (std::isfinite(now.noise))
-                    candidates.push_back({now, std::sqrt(now.stiffness_5_hz * now.stiffness_30_hz)});
+                    candidates.push_back({now, std::sqrt(now.stiffness_5_hz * now.stiffness_30_hz), false});
             }
     // equal merits in a fixed order
     std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
@@ -329,9 +330,13 @@ CouplingDesign design_coupling(const LoopFigures& wanted) {
     // a reading so coarse that nothing is quiet enough: twice the noise, until something holds
     double noise = figures.noise;
     for (int doubled = 0; doubled < 20; ++doubled, noise *= 2.0)
-        for (const Candidate& candidate : candidates)
-            if (candidate.design.noise <= noise && holds(figures, candidate.design))
+        for (Candidate& candidate : candidates) {
+            if (candidate.fails || candidate.design.noise > noise)
+                continue;
+            if (holds(figures, candidate.design))
                 return hide(figures, candidate.design);
+            candidate.fails = true;
+        }
     return {};
 }
 
