@@ -57,7 +57,13 @@ void put_back(MovableState& m, Data& data) {
 } // namespace
 
 LinkageVector tool_configuration(const Model& model, const Data& data) {
-    return model.tool.articulated ? data.linkage.position : LinkageVector(data.pose);
+    // assigned: a copy would take all that it has room for, a third of a free step's time
+    LinkageVector start;
+    if (model.tool.articulated)
+        start = data.linkage.position;
+    else
+        start = data.pose;
+    return start;
 }
 
 void put_back_what_diverged(const Model& model, Data& data, const LinkageVector& start, StepOutput& output) {
