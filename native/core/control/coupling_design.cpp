@@ -303,6 +303,7 @@ CouplingDesign design_coupling(const LoopFigures& wanted) {
     struct Candidate {
         CouplingDesign design;
         double merit;
+        // unstable, whatever the noise may be
         bool fails{false};
     };
     std::vector<Candidate> candidates;

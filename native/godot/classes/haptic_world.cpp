@@ -146,7 +146,7 @@ void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const doub
             complained_[ids[i]] = true;
             problems.add("Body " + std::to_string(ids[i]) + " was left out: " +
                          (bodies_.find(ids[i]) == nullptr
-                              ? "it is not registered."
+                              ? "it is not registered. Describe it with world_set_body() first."
                               : state_text(states.subspan(i * BodyRegistry::k_state, BodyRegistry::k_state)) +
                                     ", which is not a number. Give it a real position and velocity."));
         }
