@@ -1,4 +1,4 @@
-/// Contact detection with kept bounds: `detection/<scene>`, and the time of impact of one pair.
+/// Contact detection: `detection/<scene>`, and the time of impact of one pair.
 
 #include <haptics/core/contact/detection.hpp>
 #include <haptics/core/contact/seams.hpp>
@@ -17,8 +17,8 @@ using namespace haptics;
 struct Bench {
     std::unique_ptr<BodySet> tool{std::make_unique<BodySet>()};
     std::unique_ptr<BodySet> neighbors{std::make_unique<BodySet>()};
-    std::unique_ptr<BodyBounds> tool_bounds{std::make_unique<BodyBounds>()};
-    std::unique_ptr<BodyBounds> bounds{std::make_unique<BodyBounds>()};
+    std::unique_ptr<BodyCache> tool_cache{std::make_unique<BodyCache>()};
+    std::unique_ptr<BodyCache> cache{std::make_unique<BodyCache>()};
     PatchList patches;
 
     static Body& add(BodySet& set, BodyKind kind, const Pose& pose, const Convex& shape) {
@@ -38,13 +38,12 @@ struct Bench {
     }
     void prepare() {
         mark_seams(*neighbors);
-        compute_bounds(*tool, *tool_bounds);
-        compute_bounds(*neighbors, *bounds);
+        tool_cache->known = cache->known = false;
     }
     void run(benchmark::State& state) {
         prepare();
         for (auto _ : state) {
-            detect_patches(*tool, *tool_bounds, *neighbors, *bounds, {}, patches, patches);
+            detect_patches(*tool, *tool_cache, *neighbors, *cache, {}, patches, patches);
             benchmark::DoNotOptimize(patches.count);
         }
         state.counters["patches"] = patches.count;

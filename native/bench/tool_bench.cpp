@@ -1,6 +1,6 @@
-/// One whole haptic step of a rigid tool with friction in n contacts: `tool/contacts:n` with the default
-/// integrator, `tool/<integrator>/contacts:n`, `tool_held/…` with the coupling to a hand, and
-/// `tool_detection/contacts:n`, the part of it that finds the contacts.
+/// Steps of a rigid tool with friction in n contacts: `tool/contacts:n` with the default integrator and
+/// `tool/<integrator>/contacts:n` without the search for contacts, `tool_held/…` the same with the coupling
+/// to a hand, `tool_detection/contacts:n` the search alone, `tool_step/contacts:n` the whole step.
 
 #include <haptics/core/contact/detection.hpp>
 #include <haptics/shared/tool_in_socket.hpp>
@@ -14,7 +14,7 @@ using namespace haptics;
 void run(benchmark::State& state, Integrator integrator, bool held) {
     shared::ToolInSocket socket = shared::tool_in_socket(static_cast<int>(state.range(0)), integrator, held);
     for (auto _ : state)
-        shared::step(socket);
+        step_without_detection(socket.model, *socket.data, socket.hand, socket.time_step, socket.output);
     benchmark::DoNotOptimize(socket.output.contacts);
     if (socket.output.contacts != state.range(0))
         state.SkipWithError("the contacts were lost");
@@ -34,16 +34,23 @@ void held(benchmark::State& state) {
     run(state, LocalModelSettings{}.integrator, true);
 }
 
+void whole_step(benchmark::State& state) {
+    shared::ToolInSocket socket =
+        shared::tool_in_socket(static_cast<int>(state.range(0)), LocalModelSettings{}.integrator);
+    for (auto _ : state)
+        shared::step(socket);
+    benchmark::DoNotOptimize(socket.output.contacts);
+}
+
 void detection(benchmark::State& state) {
-    const shared::ToolInSocket socket =
+    shared::ToolInSocket socket =
         shared::tool_in_socket(static_cast<int>(state.range(0)), Integrator::linearly_implicit);
-    const Data& data = *socket.data;
+    Data& data = *socket.data;
     const DetectionSettings settings{socket.model.settings.margin, socket.time_step};
     PatchList found = data.patches;
-    PatchList previous = data.patches;
     for (auto _ : state) {
-        previous = found;
-        detect_patches(data.tool, data.neighbors, settings, previous, found);
+        detect_patches(data.tool, data.tool_cache, data.neighbors, data.neighbor_cache, settings, found,
+                       found);
         benchmark::DoNotOptimize(found.count);
     }
 }
@@ -53,6 +60,7 @@ BENCHMARK(by_default)->Name("tool") HAPTICS_CONTACTS;
 BENCHMARK(semi_implicit)->Name("tool/semi_implicit") HAPTICS_CONTACTS;
 BENCHMARK(linearly_implicit)->Name("tool/linearly_implicit") HAPTICS_CONTACTS;
 BENCHMARK(held)->Name("tool_held") HAPTICS_CONTACTS;
+BENCHMARK(whole_step)->Name("tool_step") HAPTICS_CONTACTS;
 BENCHMARK(detection)->Name("tool_detection") HAPTICS_CONTACTS;
 #undef HAPTICS_CONTACTS
 

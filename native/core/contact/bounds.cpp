@@ -42,14 +42,26 @@ PieceBounds bounds_of(const Convex& convex) {
 void compute_bounds(const BodySet& set, BodyBounds& bounds) {
     for (std::int32_t i = 0; i < set.body_count; ++i) {
         const Body& body = set.body[static_cast<std::size_t>(i)];
+        const auto first = static_cast<std::size_t>(body.first_piece);
+        const auto end = first + static_cast<std::size_t>(body.piece_count);
         double radius = 0.0;
-        for (std::int32_t k = 0; k < body.piece_count; ++k) {
-            const auto index = static_cast<std::size_t>(body.first_piece + k);
-            PieceBounds& piece = bounds.piece[index];
-            piece = bounds_of(set.piece[index].convex);
+        Vec2 low = Vec2::Constant(k_infinity);
+        Vec2 high = Vec2::Constant(-k_infinity);
+        for (std::size_t k = first; k < end; ++k) {
+            PieceBounds& piece = bounds.piece[k];
+            piece = bounds_of(set.piece[k].convex);
             radius = std::max(radius, piece.center.norm() + piece.radius);
+            low = low.cwiseMin(piece.low);
+            high = high.cwiseMax(piece.high);
         }
+        const Vec2 middle = 0.5 * (low + high);
+        const Vec2 center = middle.allFinite() ? middle : Vec2(Vec2::Zero());
+        double extent = 0.0;
+        for (std::size_t k = first; k < end; ++k)
+            extent = std::max(extent, (bounds.piece[k].center - center).norm() + bounds.piece[k].radius);
         bounds.radius[static_cast<std::size_t>(i)] = radius;
+        bounds.center[static_cast<std::size_t>(i)] = center;
+        bounds.extent[static_cast<std::size_t>(i)] = extent;
     }
 }
 

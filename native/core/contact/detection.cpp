@@ -22,12 +22,27 @@ using namespace contact;
 
 /// One body of either set with what is needed again and again.
 struct Actor {
+    const BodySet* set{nullptr};
+    BodyCache* cache{nullptr};
     const Body* body{nullptr};
     const Piece* piece{nullptr};
     const PieceBounds* bounds{nullptr};
+    std::size_t first_piece{0};
+    Transform at;
     double radius{0.0};
     std::int32_t index{0};
     bool tool{false};
+    /// How deep it was pressed into other matter in the last step, m.
+    double depth{0.0};
+    /// A disc that holds the body, in scene axes, for body b of a pair.
+    Vec2 disc_center{0.0, 0.0};
+    double disc_radius{0.0};
+    /// Centers of its pieces' bounds in scene axes, for body a of a pair.
+    const Vec2* center{nullptr};
+
+    [[nodiscard]] const PlacedConvex& placed(std::int32_t i) const {
+        return cache->piece(*set, first_piece + static_cast<std::size_t>(i), at);
+    }
 };
 
 /// Disc about a body's reference point that it cannot leave in the coming step, m.
@@ -65,25 +80,27 @@ std::uint64_t feature_id(const Actor& actor, const Piece& piece, int feature) {
 
 /// Whether a disc comes near to the box of a piece (both in the axes of the piece's body).
 bool near_box(const PieceBounds& box, const Vec2& center, double distance) {
-    const double dx = std::max({box.low.x() - center.x(), center.x() - box.high.x(), 0.0});
-    const double dy = std::max({box.low.y() - center.y(), center.y() - box.high.y(), 0.0});
+    const double dx = std::max(std::max(box.low.x() - center.x(), center.x() - box.high.x()), 0.0);
+    const double dy = std::max(std::max(box.low.y() - center.y(), center.y() - box.high.y()), 0.0);
     return dx * dx + dy * dy <= distance * distance;
 }
 
 void write_side(const Actor& a, const Actor& b, const PairContact& contact, PatchSide& side) {
     side.face = contact.face;
     side.edge = contact.edge;
-    const Body& owner = contact.face == PatchSide::Face::of_a ? *a.body : *b.body;
-    side.normal = rotate(-owner.pose.z(), contact.normal);
+    const Transform& owner = contact.face == PatchSide::Face::of_a ? a.at : b.at;
+    side.normal = owner.turn_back(contact.normal);
     side.scene_offset = contact.normal.dot(contact.point[0].position);
     if (contact.face == PatchSide::Face::of_a)
         side.scene_offset += contact.point[0].gap;
-    side.offset = side.scene_offset - contact.normal.dot(owner.pose.head<2>());
+    side.offset = side.scene_offset - contact.normal.dot(owner.origin);
 }
 
-void collide_pieces(const Search& search, const Actor& a, const Piece& piece_a, const PlacedConvex& placed_a,
-                    const Actor& b, const Piece& piece_b, const Transform& at_b, double reach) {
-    Draft draft;
+void collide_pieces(const Search& search, const Actor& a, const PlacedConvex& placed_a, std::int32_t index_a,
+                    const Actor& b, std::int32_t index_b, double reach) {
+    const Piece& piece_a = a.piece[index_a];
+    const Piece& piece_b = b.piece[index_b];
+    Draft& draft = search.drafts.next();
     PatchSide& side = draft.patch.side;
     side.id_a = a.body->id;
     side.id_b = b.body->id;
@@ -92,15 +109,15 @@ void collide_pieces(const Search& search, const Actor& a, const Piece& piece_a, 
     side.tool_a = a.tool;
     side.fixed_b = b.body->kind == BodyKind::fixed;
 
-    PlacedConvex placed_b;
-    place(piece_b.convex, at_b, placed_b);
+    const PlacedConvex& placed_b = b.placed(index_b);
     PairQuery query;
     query.limit = search.settings.margin + reach;
     query.one_way = piece_b.one_way;
     if (query.one_way)
-        query.one_way_normal = at_b.turn(piece_b.one_way_normal);
+        query.one_way_normal = b.at.turn(piece_b.one_way_normal);
     if (search.memory.count > 0)
-        query.hint = side_of(search.memory, side, placed_a, placed_b);
+        query.hint = side_of(search.memory, side, placed_a, placed_b, b.at.apply(b.bounds[index_b].center),
+                             b.bounds[index_b].radius);
 
     PairContact contact;
     if (!collide(placed_a, placed_b, query, contact))
@@ -147,43 +164,59 @@ void collide_bodies(const Search& search, const Actor& a, const Actor& b) {
     const Vec2 closing = b.body->velocity.head<2>() - a.body->velocity.head<2>();
     const double reach =
         search.settings.step * (closing.norm() + rim_speed(*a.body, a.radius) + rim_speed(*b.body, b.radius));
-    double limit = search.settings.margin + reach;
-    if (search.memory.count > 0)
-        limit += last_depth(search.memory, a.body->id, a.tool);
-    const Transform at_a(a.body->pose);
-    const Transform at_b(b.body->pose);
+    const double limit = search.settings.margin + reach + a.depth;
     for (std::int32_t i = 0; i < a.body->piece_count; ++i) {
-        const Piece& piece_a = a.piece[i];
-        const PieceBounds& bounds_a = a.bounds[i];
-        const Vec2 center = at_b.apply_inverse(at_a.apply(bounds_a.center));
-        PlacedConvex placed_a;
+        const double near = a.bounds[i].radius + limit;
+        const double wide = near + b.disc_radius;
+        const double dx = a.center[i].x() - b.disc_center.x();
+        const double dy = a.center[i].y() - b.disc_center.y();
+        if (dx * dx + dy * dy > wide * wide)
+            continue;
+        const Vec2 center = b.at.apply_inverse(a.center[i]);
+        const PlacedConvex* placed_a = nullptr;
         for (std::int32_t k = 0; k < b.body->piece_count; ++k) {
-            if (!near_box(b.bounds[k], center, bounds_a.radius + limit))
+            if (!near_box(b.bounds[k], center, near))
                 continue;
-            if (placed_a.count == 0)
-                place(piece_a.convex, at_a, placed_a);
-            if (placed_a.count > 0 && !placed_a.half_plane && b.piece[k].convex.count > 0)
-                collide_pieces(search, a, piece_a, placed_a, b, b.piece[k], at_b, reach);
+            if (placed_a == nullptr)
+                placed_a = &a.placed(i);
+            if (placed_a->count > 0 && !placed_a->half_plane && b.piece[k].convex.count > 0)
+                collide_pieces(search, a, *placed_a, i, b, k, reach);
         }
     }
 }
 
-Actor actor(const BodySet& set, const BodyBounds& bounds, std::int32_t i, std::int32_t first_index,
-            bool tool) {
+Actor actor(const BodySet& set, BodyCache& cache, std::int32_t i, std::int32_t first_index, bool tool) {
     const Body& body = set.body[static_cast<std::size_t>(i)];
     const auto first = static_cast<std::size_t>(std::clamp(body.first_piece, 0, k_max_pieces - 1));
-    return {&body,
-            &set.piece[first],
-            &bounds.piece[first],
-            bounds.radius[static_cast<std::size_t>(i)],
-            first_index + i,
-            tool};
+    Actor actor;
+    actor.set = &set;
+    actor.cache = &cache;
+    actor.body = &body;
+    actor.first_piece = first;
+    actor.piece = &set.piece[first];
+    actor.bounds = &cache.bounds.piece[first];
+    actor.at = cache.place(set, i);
+    actor.radius = cache.bounds.radius[static_cast<std::size_t>(i)];
+    actor.disc_center = actor.at.apply(cache.bounds.center[static_cast<std::size_t>(i)]);
+    actor.disc_radius = cache.bounds.extent[static_cast<std::size_t>(i)];
+    actor.index = first_index + i;
+    actor.tool = tool;
+    return actor;
+}
+
+/// Body a of pairs, with the room for the centers of its pieces.
+void become_first(const Memory& memory, std::array<Vec2, k_max_pieces>& center, Actor& a) {
+    a.depth = memory.count > 0 ? last_depth(memory, a.body->id, a.tool) : 0.0;
+    for (std::int32_t i = 0; i < a.body->piece_count; ++i)
+        center[static_cast<std::size_t>(i)] = a.at.apply(a.bounds[i].center);
+    a.center = center.data();
 }
 
 /// Movable neighbors against the others; of two movable ones the smaller id is a. What a jointed one touches
 /// is in its mobility already, but for movables that are free.
-void collide_neighbors(const Search& search, const BodySet& neighbors, const BodyBounds& bounds,
-                       const Disc* disc, std::int32_t first_index) {
+void collide_neighbors(const Search& search, const BodySet& neighbors, BodyCache& cache, const Disc* disc,
+                       std::int32_t first_index) {
+    std::array<Vec2, k_max_pieces> center;
     for (std::int32_t i = 0; i < neighbors.body_count; ++i) {
         if (!disc[i].movable)
             continue;
@@ -195,8 +228,9 @@ void collide_neighbors(const Search& search, const BodySet& neighbors, const Bod
             if ((one.jointed && (other.jointed || !disc[k].movable)) || (other.jointed && !disc[i].movable))
                 continue;
             const bool first = other.kind != BodyKind::movable || one.id < other.id;
-            collide_bodies(search, actor(neighbors, bounds, first ? i : k, first_index, false),
-                           actor(neighbors, bounds, first ? k : i, first_index, false));
+            Actor a = actor(neighbors, cache, first ? i : k, first_index, false);
+            become_first(search.memory, center, a);
+            collide_bodies(search, a, actor(neighbors, cache, first ? k : i, first_index, false));
         }
     }
 }
@@ -219,11 +253,13 @@ void sort(DraftList& drafts) {
 
 } // namespace
 
-void detect_patches(const BodySet& tool, const BodyBounds& tool_bounds, const BodySet& neighbors,
-                    const BodyBounds& neighbor_bounds, const DetectionSettings& settings,
-                    const PatchList& previous, PatchList& patches) {
+void detect_patches(const BodySet& tool, BodyCache& tool_cache, const BodySet& neighbors,
+                    BodyCache& neighbor_cache, const DetectionSettings& settings, const PatchList& previous,
+                    PatchList& patches) {
+    tool_cache.update(tool);
+    neighbor_cache.update(neighbors);
     Memory memory;
-    recall(tool, neighbors, previous, memory);
+    recall(tool, tool_cache, neighbors, neighbor_cache, previous, memory);
     DraftList drafts;
     const Search search{settings, memory, drafts};
 
@@ -231,23 +267,29 @@ void detect_patches(const BodySet& tool, const BodyBounds& tool_bounds, const Bo
     std::array<Disc, k_max_bodies> disc; // written for the bodies there are
     for (std::int32_t k = 0; k < neighbors.body_count; ++k) {
         const auto index = static_cast<std::size_t>(k);
-        disc[index] = disc_of(search, neighbors.body[index], neighbor_bounds.radius[index], false);
+        disc[index] = disc_of(search, neighbors.body[index], neighbor_cache.bounds.radius[index], false);
     }
+    std::array<Vec2, k_max_pieces> center;
     for (std::int32_t i = 0; i < tool.body_count; ++i) {
         const auto index = static_cast<std::size_t>(i);
-        const Disc own = disc_of(search, tool.body[index], tool_bounds.radius[index], true);
+        const Disc own = disc_of(search, tool.body[index], tool_cache.bounds.radius[index], true);
+        Actor a;
         for (std::int32_t k = 0; k < neighbors.body_count; ++k) {
-            if (!own.apart(disc[static_cast<std::size_t>(k)]))
-                collide_bodies(search, actor(tool, tool_bounds, i, 0, true),
-                               actor(neighbors, neighbor_bounds, k, tool.body_count, false));
+            if (own.apart(disc[static_cast<std::size_t>(k)]))
+                continue;
+            if (a.body == nullptr) {
+                a = actor(tool, tool_cache, i, 0, true);
+                become_first(memory, center, a);
+            }
+            collide_bodies(search, a, actor(neighbors, neighbor_cache, k, tool.body_count, false));
         }
     }
-    collide_neighbors(search, neighbors, neighbor_bounds, disc.data(), tool.body_count);
+    collide_neighbors(search, neighbors, neighbor_cache, disc.data(), tool.body_count);
 
     // remember and order
     sort(drafts);
-    carry_over(memory, drafts);
-    sort(drafts);
+    if (carry_over(memory, drafts))
+        sort(drafts);
 
     patches.overflow = previous.overflow + static_cast<std::uint64_t>(drafts.dropped);
     patches.count = drafts.count;
@@ -260,11 +302,9 @@ void detect_patches(const BodySet& tool, const BodyBounds& tool_bounds, const Bo
 
 void detect_patches(const BodySet& tool, const BodySet& neighbors, const DetectionSettings& settings,
                     const PatchList& previous, PatchList& patches) {
-    BodyBounds tool_bounds;
-    BodyBounds neighbor_bounds;
-    compute_bounds(tool, tool_bounds);
-    compute_bounds(neighbors, neighbor_bounds);
-    detect_patches(tool, tool_bounds, neighbors, neighbor_bounds, settings, previous, patches);
+    BodyCache tool_cache;
+    BodyCache neighbor_cache;
+    detect_patches(tool, tool_cache, neighbors, neighbor_cache, settings, previous, patches);
 }
 
 } // namespace haptics

@@ -2,8 +2,7 @@
 /// Contact of a flat face with whatever of another piece is in front of (or behind) it.
 
 #include <haptics/core/contact/contact.hpp>
-
-#include "placed_convex.hpp"
+#include <haptics/core/contact/placed_convex.hpp>
 
 namespace haptics::contact {
 

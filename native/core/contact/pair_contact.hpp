@@ -3,10 +3,9 @@
 /// is felt from.
 
 #include <haptics/core/contact/contact.hpp>
+#include <haptics/core/contact/placed_convex.hpp>
 
 #include <cstdint>
-
-#include "placed_convex.hpp"
 
 namespace haptics::contact {
 

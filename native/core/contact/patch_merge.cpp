@@ -17,7 +17,6 @@
 #include "patch_merge.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <utility>
 
 namespace haptics::contact {
@@ -36,12 +35,14 @@ constexpr double k_one_point = 1e-8;
 constexpr double k_merge_tie = 1e-12;
 
 bool one_patch(const Draft& p, const Draft& q) {
+    if (p.patch.normal.dot(q.patch.normal) < k_same_push)
+        return false;
     const PatchSide& s = p.patch.side;
     const PatchSide& t = q.patch.side;
     if (s.id_a != t.id_a || s.tool_a != t.tool_a || s.fixed_b != t.fixed_b ||
         (!s.fixed_b && s.id_b != t.id_b))
         return false;
-    if (p.patch.normal.dot(q.patch.normal) < k_same_push || !(p.surface_b == q.surface_b))
+    if (!(p.surface_b == q.surface_b))
         return false;
     const double turn = cross(p.plane_normal, q.plane_normal);
     return std::abs(turn) < k_merge_turn && p.plane_normal.dot(q.plane_normal) > 0.0 &&
@@ -144,7 +145,6 @@ void DraftList::add(const Draft& added) {
         return;
     }
     if (count < k_max_patches) {
-        std::construct_at(&(*this)[count], added);
         ++count;
         return;
     }

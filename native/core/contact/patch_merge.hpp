@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <new>
 #include <type_traits>
 
@@ -45,8 +46,10 @@ struct DraftList {
     int count{0};
     int dropped{0};
 
-    /// Adds a contact, merging it into the patch on the same plane if there is one. When the list is full the
-    /// shallowest goes.
+    /// A new draft in the place where `add` would put it.
+    [[nodiscard]] Draft& next() { return *std::construct_at(&(*this)[count]); }
+    /// Adds the draft that `next` gave, merging it into the patch on the same plane if there is one. When the
+    /// list is full the shallowest goes.
     void add(const Draft& added);
     /// Removes by moving the last one into its place.
     void remove(int index) {
@@ -64,7 +67,7 @@ struct DraftList {
     }
 
   private:
-    alignas(Draft) std::array<std::byte, sizeof(Draft) * k_max_patches> room_;
+    alignas(Draft) std::array<std::byte, sizeof(Draft) * (k_max_patches + 1)> room_;
 };
 static_assert(std::is_trivially_destructible_v<Draft>);
 

@@ -26,13 +26,19 @@ constexpr double k_same_plane_turn = 1e-3;
 /// Depth from which a one-way piece lets pass what has no history, m.
 constexpr double k_one_way_depth = 1e-6;
 
-const Body* find(const BodySet& set, std::uint64_t id) {
-    for (std::int32_t i = 0; i < set.body_count; ++i) {
-        const Body& body = set.body[static_cast<std::size_t>(i)];
-        if (body.id == id)
-            return &body;
-    }
-    return nullptr;
+/// Index of a body, -1 when it is gone; mostly it is where it was.
+std::int32_t find(const BodySet& set, std::uint64_t id, std::int32_t hint) {
+    if (hint >= 0 && hint < set.body_count && set.body[static_cast<std::size_t>(hint)].id == id)
+        return hint;
+    for (std::int32_t i = 0; i < set.body_count; ++i)
+        if (set.body[static_cast<std::size_t>(i)].id == id)
+            return i;
+    return -1;
+}
+
+/// Index of the k-th deepest.
+std::size_t index_at(const Memory& memory, int k) {
+    return static_cast<std::size_t>(memory.by_depth[static_cast<std::size_t>(k)]);
 }
 
 bool same_pair(const PatchSide& p, const PatchSide& q) {
@@ -95,19 +101,23 @@ void go_on(const Memory& memory, int old, Draft& draft, std::array<bool, k_max_p
     draft.patch.memory = memory.patch[static_cast<std::size_t>(old)].patch->memory;
 }
 
-/// Same features first.
+/// Same features first; mostly the patches are those of the last step, in the same order.
 int match_features(const Memory& memory, DraftList& drafts, std::array<bool, k_max_patches>& used) {
+    const auto match = [&](int k, int i) {
+        const Remembered& old = memory.patch[static_cast<std::size_t>(i)];
+        Draft& draft = drafts[k];
+        if (used[static_cast<std::size_t>(i)] || old.patch->feature_a != draft.patch.feature_a ||
+            old.patch->feature_b != draft.patch.feature_b || !may_go_on(old, draft))
+            return false;
+        go_on(memory, i, draft, used);
+        return true;
+    };
     int matched = 0;
     for (int k = 0; k < drafts.count; ++k) {
-        Draft& draft = drafts[k];
-        for (int i = 0; i < memory.count && draft.previous < 0; ++i) {
-            const Remembered& old = memory.patch[static_cast<std::size_t>(i)];
-            if (!used[static_cast<std::size_t>(i)] && old.patch->feature_a == draft.patch.feature_a &&
-                old.patch->feature_b == draft.patch.feature_b && may_go_on(old, draft)) {
-                go_on(memory, i, draft, used);
-                ++matched;
-            }
-        }
+        bool found = k < memory.count && match(k, k);
+        for (int i = 0; i < memory.count && !found; ++i)
+            found = match(k, i);
+        matched += found ? 1 : 0;
     }
     return matched;
 }
@@ -141,38 +151,49 @@ void match_nearest(const Memory& memory, DraftList& drafts, int rounds,
 
 } // namespace
 
-void recall(const BodySet& tool, const BodySet& neighbors, const PatchList& previous, Memory& memory) {
-    memory.count = 0;
+void recall(const BodySet& tool, BodyCache& tool_cache, const BodySet& neighbors, BodyCache& neighbor_cache,
+            const PatchList& previous, Memory& memory) {
+    memory.count = previous.count;
     for (std::int32_t i = 0; i < previous.count; ++i) {
         const Patch& patch = previous.patch[static_cast<std::size_t>(i)];
-        Remembered& entry = memory.patch[static_cast<std::size_t>(memory.count++)];
+        Remembered& entry = memory.patch[static_cast<std::size_t>(i)];
         entry.patch = &patch;
         entry.gap = smallest_gap(patch);
         entry.normal = patch.normal;
         entry.offset = patch.side.scene_offset;
         const bool of_a = patch.side.face == Face::of_a;
-        const Body* owner =
-            find(of_a && patch.side.tool_a ? tool : neighbors, of_a ? patch.side.id_a : patch.side.id_b);
-        if (owner != nullptr) {
-            entry.normal = rotate(owner->pose.z(), patch.side.normal);
-            entry.offset = entry.normal.dot(owner->pose.head<2>()) + patch.side.offset;
+        const bool of_tool = of_a && patch.side.tool_a;
+        const BodySet& set = of_tool ? tool : neighbors;
+        const std::int32_t index = of_a ? patch.body_a : patch.body_b;
+        const std::int32_t owner =
+            find(set, of_a ? patch.side.id_a : patch.side.id_b, of_tool ? index : index - tool.body_count);
+        if (owner >= 0) {
+            const Transform at = (of_tool ? tool_cache : neighbor_cache).place(set, owner);
+            entry.normal = at.turn(patch.side.normal);
+            entry.offset = entry.normal.dot(at.origin) + patch.side.offset;
         }
+        int k = i;
+        for (; k > 0 && entry.gap < memory.patch[index_at(memory, k - 1)].gap; --k)
+            memory.by_depth[static_cast<std::size_t>(k)] = memory.by_depth[static_cast<std::size_t>(k - 1)];
+        memory.by_depth[static_cast<std::size_t>(k)] = static_cast<std::int8_t>(i);
     }
 }
 
-SideHint side_of(const Memory& memory, const PatchSide& pair, const PlacedConvex& a, const PlacedConvex& b) {
-    SideHint hint;
-    double lowest = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < memory.count; ++i) {
-        const Remembered& old = memory.patch[static_cast<std::size_t>(i)];
+SideHint side_of(const Memory& memory, const PatchSide& pair, const PlacedConvex& a, const PlacedConvex& b,
+                 const Vec2& center_b, double radius_b) {
+    for (int k = 0; k < memory.count; ++k) {
+        const Remembered& old = memory.patch[index_at(memory, k)];
         const PatchSide& side = old.patch->side;
-        if (!same_pair(side, pair) || old.gap >= lowest)
+        if (!same_pair(side, pair))
             continue;
         const bool same_b = side.id_b == pair.id_b && side.piece_b == pair.piece_b;
         const bool same_pieces = same_b && side.piece_a == pair.piece_a;
         SideHint found;
         if (side.face == Face::of_b) {
-            found.edge = edge_on_plane(b, old.normal, old.offset);
+            // most of b's neighbors are nowhere near the plane
+            found.edge = std::abs(old.normal.dot(center_b) - old.offset) > radius_b + k_same_plane
+                             ? -1
+                             : edge_on_plane(b, old.normal, old.offset);
             if (found.edge >= 0)
                 found.face = Face::of_b;
         } else if (side.face == Face::of_a && same_pieces && side.edge < a.faces() &&
@@ -184,10 +205,9 @@ SideHint side_of(const Memory& memory, const PatchSide& pair, const PlacedConvex
             continue;
         found.normal = old.normal;
         found.known = true;
-        hint = found;
-        lowest = old.gap;
+        return found;
     }
-    return hint;
+    return {};
 }
 
 double last_depth(const Memory& memory, std::uint64_t id_a, bool tool_a) {
@@ -200,12 +220,13 @@ double last_depth(const Memory& memory, std::uint64_t id_a, bool tool_a) {
     return depth;
 }
 
-void carry_over(const Memory& memory, DraftList& drafts) {
+bool carry_over(const Memory& memory, DraftList& drafts) {
     std::array<bool, k_max_patches> used{};
     const int matched = match_features(memory, drafts, used);
     match_nearest(memory, drafts, std::min(drafts.count, memory.count) - matched, used);
 
     // drop what cannot be
+    bool dropped = false;
     for (int k = drafts.count - 1; k >= 0; --k) {
         const Draft& draft = drafts[k];
         if (draft.previous >= 0)
@@ -221,7 +242,9 @@ void carry_over(const Memory& memory, DraftList& drafts) {
         }
         if (drop)
             drafts.remove(k);
+        dropped = dropped || drop;
     }
+    return dropped;
 }
 
 } // namespace haptics::contact

@@ -48,7 +48,8 @@ void look(const Model& model, Data& data, double dt) {
     for (int i = 0; i < s.patches; ++i)
         data.patches.patch[index(s.row[index(i)].patch)].memory.row = i;
     data.previous = data.patches;
-    detect_patches(data.tool, data.neighbors, {model.settings.margin, dt}, data.previous, data.patches);
+    detect_patches(data.tool, data.tool_cache, data.neighbors, data.neighbor_cache,
+                   {model.settings.margin, dt}, data.previous, data.patches);
     if (data.plan.runs(Stage::moving_walls))
         weigh_contacts(data);
 }

@@ -163,6 +163,7 @@ void end_fades(Data& data) {
     if (kept == set.body_count)
         return;
     rename(now, data);
+    data.neighbor_cache.known = false;
     set.body_count = kept; // their pieces stay until the next snapshot
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "internal.hpp"
+#include "outcome.hpp"
 
 namespace haptics::local {
 namespace {
@@ -23,24 +24,6 @@ ContactState next_state(const ContactSystem& s, const PatchRow& t) {
     if (!touching)
         return ContactState::none;
     return t.mode == FrictionMode::stick ? ContactState::sticking : ContactState::sliding;
-}
-
-void add_event(StepOutput& output, ContactEventKind kind, std::uint64_t body, double time, const Patch* patch,
-               double impulse) {
-    if (output.event_count == StepOutput::k_max_events) {
-        ++output.events_dropped;
-        return;
-    }
-    ContactEvent& e = output.event[static_cast<std::size_t>(output.event_count++)];
-    e = ContactEvent{kind, body, time, {0.0, 0.0}, {0.0, 1.0}, impulse};
-    if (patch != nullptr) {
-        Vec2 middle{0.0, 0.0};
-        for (int k = 0; k < patch->point_count; ++k)
-            middle += patch->point[static_cast<std::size_t>(k)].weight *
-                      patch->point[static_cast<std::size_t>(k)].position;
-        e.position = {middle.x(), middle.y()};
-        e.normal = {patch->normal.x(), patch->normal.y()};
-    }
 }
 
 // motion of the tool and springs of its contacts
@@ -72,19 +55,31 @@ void remember_joint(const ContactSystem& s, const PatchRow& t, Data& data) {
     joint.sliding = t.was_sliding;
 }
 
-bool contains(const std::array<std::uint64_t, k_max_patches>& ids, std::int32_t count, std::uint64_t id) {
-    return std::find(ids.begin(), ids.begin() + count, id) != ids.begin() + count;
-}
-
 } // namespace
+
+void Outcomes::add_event(ContactEventKind kind, std::uint64_t body, const Patch* patch, double impulse) {
+    if (output_.event_count == StepOutput::k_max_events) {
+        ++output_.events_dropped;
+        return;
+    }
+    ContactEvent& e = output_.event[static_cast<std::size_t>(output_.event_count++)];
+    e = ContactEvent{kind, body, data_.time, {0.0, 0.0}, {0.0, 1.0}, impulse};
+    if (patch != nullptr) {
+        Vec2 middle{0.0, 0.0};
+        for (int k = 0; k < patch->point_count; ++k)
+            middle += patch->point[static_cast<std::size_t>(k)].weight *
+                      patch->point[static_cast<std::size_t>(k)].position;
+        e.position = {middle.x(), middle.y()};
+        e.normal = {patch->normal.x(), patch->normal.y()};
+    }
+}
 
 void finish(const Model& model, Data& data, StepOutput& output) {
     ContactSystem& s = data.system;
     end_tool_step(model, data);
     for (int i = 0; i < k_max_freedoms && model.tool.articulated; ++i)
         data.joint[i].at_limit = false;
-    std::array<std::uint64_t, k_max_patches> touched;
-    std::int32_t touched_count = 0;
+    Outcomes outcomes(data, output);
     for (int i = 0; i < s.patches; ++i) {
         const PatchRow& t = s.row[static_cast<std::size_t>(i)];
         if (t.patch < 0) {
@@ -92,8 +87,6 @@ void finish(const Model& model, Data& data, StepOutput& output) {
             continue;
         }
         Patch& p = data.patches.patch[static_cast<std::size_t>(t.patch)];
-        const ContactState before = p.memory.state;
-        const ContactState after = next_state(s, t);
         double normal = 0.0;
         for (int k = 0; k < t.point_count; ++k) {
             const PointRow& row = s.point[static_cast<std::size_t>(t.first_point + k)];
@@ -101,37 +94,10 @@ void finish(const Model& model, Data& data, StepOutput& output) {
             p.point[static_cast<std::size_t>(row.slot)].gap = row.gap;
             output.max_penetration = std::max(output.max_penetration, -row.gap);
         }
-        p.memory.state = after;
-        p.memory.slip_spring = after == ContactState::none ? 0.0 : t.spring;
-        p.memory.age = after == ContactState::none ? 0 : p.memory.age + 1;
-        p.memory.normal_force = normal;
-        p.memory.tangent_force = t.force;
-        output.contacts += after != ContactState::none ? 1 : 0;
-        output.colliding += after == ContactState::colliding ? 1 : 0;
-        output.sticking += after == ContactState::sticking ? 1 : 0;
-        output.sliding += after == ContactState::sliding ? 1 : 0;
-        output.impulse_size += t.impulse;
-        if (p.body_a >= data.tool.body_count || after == ContactState::none)
-            continue;
-        const std::uint64_t id =
-            data.neighbors.body[static_cast<std::size_t>(p.body_b - data.tool.body_count)].id;
-        if (!contains(touched, touched_count, id))
-            touched[static_cast<std::size_t>(touched_count++)] = id;
-        if (!contains(data.touched, data.touched_count, id))
-            add_event(output, ContactEventKind::began, id, data.time, &p, 0.0);
-        if (t.collided)
-            add_event(output, ContactEventKind::impact, id, data.time, &p, t.impulse);
-        if (before == ContactState::sticking && after == ContactState::sliding)
-            add_event(output, ContactEventKind::slip, id, data.time, &p, 0.0);
+        outcomes.tell(p, {next_state(s, t), normal, t.force, t.spring, t.impulse, t.collided});
     }
-    for (std::int32_t i = 0; i < data.touched_count; ++i) {
-        const std::uint64_t id = data.touched[static_cast<std::size_t>(i)];
-        if (!contains(touched, touched_count, id))
-            add_event(output, ContactEventKind::ended, id, data.time, nullptr, 0.0);
-    }
+    outcomes.end();
     output.stored_energy = stored_energy(model, data);
-    std::copy_n(touched.begin(), touched_count, data.touched.begin());
-    data.touched_count = touched_count;
 }
 
 } // namespace haptics::local

@@ -52,6 +52,10 @@ void move_bodies(const Model& model, Data& data, const FreedomVector& moved, dou
 // A step of a rigid tool that touches nothing (free_rigid.cpp).
 void step_freely(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output);
 
+// A step of a rigid tool that touches only what it cannot move, and hits nothing; false, with nothing
+// changed, where it is not that (rigid_contact.cpp).
+bool step_in_contact(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output);
+
 // A step or the rest of one with the exact integrator (exact_step.cpp), collisions included.
 void step_exactly(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output);
 

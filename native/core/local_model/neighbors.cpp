@@ -189,6 +189,7 @@ void take_neighborhood(const Neighborhood& n, Data& data) {
     copy_bodies(n.bodies, data.neighbors);
     std::copy_n(data.next_track.begin(), n.bodies.body_count, data.track.begin());
     append_leavers(data);
+    data.neighbor_cache.known = false;
     data.sequence = n.sequence;
     data.snapshot_time = n.time;
     data.tick = n.tick;

@@ -29,6 +29,8 @@ constexpr std::array<StageText, k_stage_count> k_text{{
     {Stage::restitution, "restitution", "no surface near bounces"},
     {Stage::friction, "friction", "no pair of surfaces has friction"},
     {Stage::free_system, "matrices in steps without contact", "a rigid tool that touches nothing needs none"},
+    {Stage::contact_system, "matrices in steps with contact",
+     "a rigid tool among what it cannot move needs none"},
 }};
 
 // surfaces of the tool's links and of the neighbors: whether any pair gives `figure` > 0
@@ -92,7 +94,9 @@ Plan choose_plan(const Model& model, const Neighborhood& n) {
     need(Stage::joint_springs, articulated && any_joint(model, [](const JointSpec& j) {
                                    return j.spring_stiffness > 0.0 || j.damping > 0.0;
                                }));
-    need(Stage::free_system, articulated || model.settings.integrator == Integrator::exact);
+    const bool exact = model.settings.integrator == Integrator::exact;
+    need(Stage::free_system, articulated || exact);
+    need(Stage::contact_system, articulated || exact || plan.runs(Stage::movables));
     return plan;
 }
 

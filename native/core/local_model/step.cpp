@@ -27,8 +27,11 @@ void find_contacts(const Model& model, Data& data, double dt) {
     const bool fades = data.plan.runs(Stage::moving_walls);
     if (fades)
         local::end_fades(data);
-    data.previous = data.patches;
-    detect_patches(data.tool, data.neighbors, {model.settings.margin, dt}, data.previous, data.patches);
+    const bool exact = model.settings.integrator == Integrator::exact;
+    if (exact) // it asks for them later in the step
+        data.previous = data.patches;
+    detect_patches(data.tool, data.tool_cache, data.neighbors, data.neighbor_cache,
+                   {model.settings.margin, dt}, exact ? data.previous : data.patches, data.patches);
     if (fades)
         local::weigh_contacts(data);
 }
@@ -55,15 +58,22 @@ void advance(const Model& model, Data& data, const HandInput& hand, double dt, S
         local::integrate(model, data, hand, left, 0.0, left / dt, output);
 }
 
-void make_step(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output) {
+enum class Contacts : std::uint8_t { sought, kept };
+
+void make_step(const Model& model, Data& data, const HandInput& hand, double dt, Contacts contacts,
+               StepOutput& output) {
     local::begin_tool_step(model, data);
-    find_contacts(model, data, dt);
+    if (contacts == Contacts::sought)
+        find_contacts(model, data, dt);
     const bool exact = model.settings.integrator == Integrator::exact;
     if (data.patches.count == 0 && !exact && !data.plan.runs(Stage::free_system)) {
         local::step_freely(model, data, hand, dt, output);
         local::finish(model, data, output);
         return;
     }
+    if (!exact && !data.plan.runs(Stage::contact_system) &&
+        local::step_in_contact(model, data, hand, dt, output))
+        return;
     data.system.ahead = exact && model.tool.articulated ? 0.5 * dt : 0.0;
     local::assemble(model, data, dt);
 
@@ -74,6 +84,15 @@ void make_step(const Model& model, Data& data, const HandInput& hand, double dt,
     else
         advance(model, data, hand, dt, output);
     local::finish(model, data, output);
+}
+
+void guarded_step(const Model& model, Data& data, const HandInput& hand, double dt, Contacts contacts,
+                  StepOutput& output) {
+    output.clear();
+    const LinkageVector start = local::tool_configuration(model, data);
+    make_step(model, data, hand, dt, contacts, output);
+    local::put_back_what_diverged(model, data, start, output);
+    ++data.step;
 }
 
 } // namespace
@@ -93,6 +112,7 @@ void reset(const Model& model, Data& data, const LinkageVector& configuration) {
     data.grip = model.tool.grip;
     data.patches.count = 0;
     data.touched_count = 0;
+    data.tool_cache.known = false;
     data.tool.body_count = model.tool.shape.body_count;
     data.tool.piece_count = model.tool.shape.piece_count;
     std::copy_n(model.tool.shape.body.begin(), model.tool.shape.body_count, data.tool.body.begin());
@@ -126,11 +146,12 @@ void step_direct(const Model& model, Data& data, const Pose& pose, const Twist& 
 }
 
 void step(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output) {
-    output.clear();
-    const LinkageVector start = local::tool_configuration(model, data);
-    make_step(model, data, hand, dt, output);
-    local::put_back_what_diverged(model, data, start, output);
-    ++data.step;
+    guarded_step(model, data, hand, dt, Contacts::sought, output);
+}
+
+void step_without_detection(const Model& model, Data& data, const HandInput& hand, double dt,
+                            StepOutput& output) {
+    guarded_step(model, data, hand, dt, Contacts::kept, output);
 }
 
 } // namespace haptics

@@ -251,15 +251,14 @@ TEST_CASE("detection and time of impact take nothing from the heap") {
     auto set = make_set();
     fill_room(*set);
     mark_seams(*set);
-    auto bounds = std::make_unique<BodyBounds>();
-    auto tool_bounds = std::make_unique<BodyBounds>();
+    auto cache = std::make_unique<BodyCache>();
+    auto tool_cache = std::make_unique<BodyCache>();
     PatchList patches;
     for (int trial = 0; trial < 100; ++trial) {
         const auto tool = random_tool(random);
         const AllocationGuard guard;
-        compute_bounds(*tool, *tool_bounds);
-        compute_bounds(*set, *bounds);
-        detect_patches(*tool, *tool_bounds, *set, *bounds, {}, patches, patches);
+        tool_cache->known = false;
+        detect_patches(*tool, *tool_cache, *set, *cache, {}, patches, patches);
         for (std::size_t i = 0; i < static_cast<std::size_t>(patches.count); ++i)
             (void)time_of_impact(*tool, *set, patches.patch[i], Twist{0.1, -0.2, 3}, Twist{0, 0, 0}, 0.001);
         CHECK(guard.allocations() == 0);

@@ -23,6 +23,9 @@ struct PieceBounds {
 struct BodyBounds {
     /// Radius about the body's reference point that holds all its pieces, m; infinite with a half-plane.
     std::array<double, k_max_bodies> radius;
+    /// A smaller disc that holds them too, in the axes of the body.
+    std::array<Vec2, k_max_bodies> center;
+    std::array<double, k_max_bodies> extent;
     std::array<PieceBounds, k_max_pieces> piece;
 };
 

@@ -2,7 +2,7 @@
 /// Finds the contact patches of a step and carries the memory of the last step's patches over to them.
 
 #include <haptics/core/contact/body.hpp>
-#include <haptics/core/contact/bounds.hpp>
+#include <haptics/core/contact/body_cache.hpp>
 #include <haptics/core/contact/contact.hpp>
 
 namespace haptics {
@@ -25,10 +25,10 @@ struct DetectionSettings {
 void detect_patches(const BodySet& tool, const BodySet& neighbors, const DetectionSettings& settings,
                     const PatchList& previous, PatchList& patches);
 
-/// The same with bounds that the caller keeps (see compute_bounds): they hold until a shape changes, whatever
-/// the poses.
-void detect_patches(const BodySet& tool, const BodyBounds& tool_bounds, const BodySet& neighbors,
-                    const BodyBounds& neighbor_bounds, const DetectionSettings& settings,
-                    const PatchList& previous, PatchList& patches);
+/// The same with what the caller keeps from step to step, one for each set. `known` is false wherever a shape
+/// or a body of the set was changed, added or removed since; poses and velocities may change.
+void detect_patches(const BodySet& tool, BodyCache& tool_cache, const BodySet& neighbors,
+                    BodyCache& neighbor_cache, const DetectionSettings& settings, const PatchList& previous,
+                    PatchList& patches);
 
 } // namespace haptics

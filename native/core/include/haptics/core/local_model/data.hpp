@@ -1,6 +1,7 @@
 #pragma once
 /// State of the local model and the memory it works on. Large: set it aside once, before the loop starts.
 
+#include <haptics/core/contact/body_cache.hpp>
 #include <haptics/core/contact/contact.hpp>
 #include <haptics/core/dynamics/articulated.hpp>
 #include <haptics/core/local_model/contact_system.hpp>
@@ -61,6 +62,9 @@ struct Data {
     /// The tool's shapes at the present poses and the neighbors at their extrapolated poses.
     BodySet tool;
     BodySet neighbors;
+    /// What detection keeps of the two while their shapes stay.
+    BodyCache tool_cache;
+    BodyCache neighbor_cache;
     /// The snapshot that the neighbors come from.
     std::uint64_t sequence{0};
     double snapshot_time{0.0};

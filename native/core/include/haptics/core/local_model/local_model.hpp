@@ -129,6 +129,11 @@ void pass_time(Data& data, double seconds);
 /// Advances the proxy and its movable neighbors by `dt` (s, > 0). Allocation-free and bounded.
 void step(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output);
 
+/// The same with the contacts of the last step, which are not looked for anew: tells what forces and motion
+/// cost alone. For measurements.
+void step_without_detection(const Model& model, Data& data, const HandInput& hand, double dt,
+                            StepOutput& output);
+
 /// J_h D^-1 J_h^T at the grip for the present pose.
 Mat3 grip_mobility(const Model& model, Data& data);
 

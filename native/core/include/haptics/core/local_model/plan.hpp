@@ -29,8 +29,9 @@ enum class Stage : std::uint8_t {
     joint_friction, ///< friction rows of joints
     joint_springs,  ///< springs and dampers of joints
     free_system,    ///< mass matrix, rows and solver in a step without contacts
+    contact_system, ///< the same in a step that touches only walls, and hits nothing
 };
-inline constexpr int k_stage_count = 13;
+inline constexpr int k_stage_count = 14;
 
 /// Set of stages. Plain bits: it crosses threads by copying.
 struct Plan {

@@ -1,0 +1,474 @@
+// A rigid tool among what it cannot move, over a whole step without collisions.
+//
+// The equation is that of integrate.cpp with D = diag(m, m, I) and rows [n_x, n_y, r x n]: three unknowns,
+// whatever the number of contacts. So the contacts of the step are read once into a few numbers each, the
+// equation is summed up and solved, and the results go straight back to the patches: no mass matrix, no rows
+// in memory, no islands. The operations on the motion are those of the general path and in the same order, so
+// it is the same to the last bit, and one step may take this path and the next the other.
+//
+// The general path is left to what is rare: a point that closes within the step, matter that fades, sets that
+// do not settle. Nothing is written before it is known that none of these happens.
+
+#include <algorithm>
+#include <cmath>
+
+#include "contact_rules.hpp"
+#include "internal.hpp"
+#include "outcome.hpp"
+#include "primal_solver.hpp"
+#include "rigid_grip.hpp"
+#include "small_solve.hpp"
+
+namespace haptics::local {
+namespace {
+
+// A row [n_x, n_y, r x n]. Plain numbers here and below: the compiler keeps them in registers.
+struct Row {
+    double x;
+    double y;
+    double turn;
+
+    [[nodiscard]] double dot(const Row& v) const { return (x * v.x + y * v.y) + turn * v.turn; }
+};
+
+Row row_of(const Vec3& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+// The numbers of one point that a step needs. Not set before they are written: there is room for many.
+struct Point {
+    double turn; // of its row; x and y are those of the patch
+    double gap;
+    double stiffness;
+    double damping;
+    double drive;
+    double rate;
+    double force;
+    bool active;
+};
+
+// A patch with its points and its friction.
+struct Contact {
+    double nx;
+    double ny;
+    int points;
+    bool rough;
+    bool was_sliding;
+    FrictionMode mode;
+    std::array<Point, 2> point;
+    double slip_turn; // of the tangent's row [-n_y, n_x, r x t]
+    double stiffness;
+    double damping;
+    double static_friction;
+    double dynamic_friction;
+    double drive;
+    double spring;
+    double force;
+
+    [[nodiscard]] double rate(const Point& p, const Row& v) const {
+        return Row{nx, ny, p.turn}.dot(v) - p.drive;
+    }
+    [[nodiscard]] double slip_rate(const Row& v) const { return Row{-ny, nx, slip_turn}.dot(v) - drive; }
+    [[nodiscard]] double pressing() const {
+        return points > 1 ? point[0].force + point[1].force : point[0].force;
+    }
+
+    // friction that follows from the force of a stuck spring
+    void rub(double trial) {
+        const double presses = pressing();
+        if (presses <= 0.0) {
+            mode = FrictionMode::off;
+            force = 0.0;
+            return;
+        }
+        const double bound = (slips(mode) || was_sliding ? dynamic_friction : static_friction) * presses;
+        if (std::abs(trial) <= bound) {
+            mode = FrictionMode::stick;
+            force = trial;
+            return;
+        }
+        mode = trial > 0.0 ? FrictionMode::slip_forward : FrictionMode::slip_backward;
+        force = slip_sign(mode) * dynamic_friction * presses;
+    }
+};
+
+class RigidContacts {
+  public:
+    RigidContacts(const Model& model, const Data& data, double dt)
+        : model_(model)
+        , data_(data)
+        , dt_(dt)
+        , awaits_hits_(data.plan.runs(Stage::collisions) && model.settings.max_events > 0 &&
+                       model.settings.contact_mode != ContactMode::penalty) {}
+
+    // reads the contacts; false when one of them is not for this path
+    bool read() {
+        const bool rough = data_.plan.runs(Stage::friction);
+        const bool walls_move = data_.plan.runs(Stage::moving_walls);
+        const double center_x = data_.pose.x();
+        const double center_y = data_.pose.y();
+        const Row v = row_of(data_.velocity);
+        count_ = data_.patches.count;
+        for (int i = 0; i < count_; ++i) {
+            const Patch& p = data_.patches.patch[static_cast<std::size_t>(i)];
+            if (p.presence < 1.0 || p.body_a != 0)
+                return false;
+            const Body* other =
+                walls_move ? &data_.neighbors.body[static_cast<std::size_t>(p.body_b - 1)] : nullptr;
+            const bool continuing = p.memory.state != ContactState::none;
+            Contact& c = contact_[static_cast<std::size_t>(i)];
+            c.nx = p.normal.x();
+            c.ny = p.normal.y();
+            c.points = p.point_count;
+            double middle_x = 0.0;
+            double middle_y = 0.0;
+            for (int k = 0; k < p.point_count; ++k) {
+                const PatchPoint& from = p.point[static_cast<std::size_t>(k)];
+                Point& to = c.point[static_cast<std::size_t>(k)];
+                const double x = from.position.x();
+                const double y = from.position.y();
+                to.turn = (x - center_x) * c.ny - (y - center_y) * c.nx;
+                to.drive = other == nullptr ? 0.0 : drive(*other, from.position, p.normal);
+                to.gap = from.gap;
+                to.stiffness = p.surface.stiffness * from.weight;
+                to.damping = p.surface.damping * from.weight;
+                to.rate = c.rate(to, v);
+                to.force = 0.0;
+                // what presses now keeps pressing
+                to.active = to.gap < 0.0;
+                any_open_ = any_open_ || !to.active;
+                if (awaits_hits_ && !(to.active && continuing) && closes(to, continuing))
+                    return false;
+                middle_x += from.weight * x;
+                middle_y += from.weight * y;
+            }
+            c.stiffness = p.surface.stiffness;
+            c.damping = p.surface.damping;
+            c.static_friction = std::max(p.surface.static_friction, p.surface.dynamic_friction);
+            c.dynamic_friction = p.surface.dynamic_friction;
+            c.spring = p.memory.slip_spring;
+            c.was_sliding = p.memory.state == ContactState::sliding;
+            c.rough = rough && c.static_friction > 0.0;
+            // and what may stick, sticks
+            c.mode = c.rough ? FrictionMode::stick : FrictionMode::off;
+            c.force = 0.0;
+            c.drive = 0.0;
+            c.slip_turn = (middle_x - center_x) * c.nx + (middle_y - center_y) * c.ny;
+            if (c.rough && other != nullptr)
+                c.drive = drive(*other, {middle_x, middle_y}, perpendicular(p.normal));
+        }
+        return true;
+    }
+
+    // the velocity at the end of the step; false when it is not for this path
+    bool solve(const HandInput& hand, const RigidGrip& grip, const Pose& at, Vec3& v) {
+        const ToolModel& tool = model_.tool;
+        const Vec3 mass(tool.mass, tool.mass, tool.inertia);
+        Mat3 base = mass.asDiagonal();
+        Vec3 right = mass.cwiseProduct(data_.velocity) + dt_ * weight();
+        if (hand.held)
+            couple_rigid(grip, at, hand, dt_, 0.0, base, right);
+        if (model_.settings.integrator == Integrator::semi_implicit) {
+            start_forces(right);
+            solve_definite(base, right);
+            v = right;
+            return true;
+        }
+        start_sets();
+        for (int left = k_max_iterations; left > 0; --left) {
+            solve_sets(base, right, v);
+            if (update_sets(row_of(v)))
+                return true;
+        }
+        return false;
+    }
+
+    // something that was apart closes with the motion that was found
+    [[nodiscard]] bool meets(const Row& v) const {
+        if (!awaits_hits_ || !any_open_)
+            return false;
+        for (int i = 0; i < count_; ++i) {
+            const Contact& c = contact_[static_cast<std::size_t>(i)];
+            for (int k = 0; k < c.points; ++k) {
+                const Point& p = c.point[static_cast<std::size_t>(k)];
+                if (p.gap > 0.0 && p.gap + dt_ * c.rate(p, v) <= 0.0)
+                    return true;
+            }
+        }
+        return false;
+    }
+
+    // What the contacts did in the step.
+    struct Sum {
+        Wrench force; // with the torque about the center of mass
+        double work;  // of walls that move
+        double energy;
+    };
+
+    // gaps, friction springs and states at the end of the step, into the patches
+    Sum tell(const Row& v, Data& data, StepOutput& output) const {
+        double energy = 0.0;
+        double x = 0.0;
+        double y = 0.0;
+        double turn = 0.0;
+        double power = 0.0;
+        Outcomes outcomes(data, output);
+        for (int i = 0; i < count_; ++i) {
+            const Contact& c = contact_[static_cast<std::size_t>(i)];
+            Patch& p = data.patches.patch[static_cast<std::size_t>(i)];
+            Outcome now;
+            bool touches = false;
+            for (int k = 0; k < c.points; ++k) {
+                const Point& q = c.point[static_cast<std::size_t>(k)];
+                const double gap = q.gap + dt_ * c.rate(q, v);
+                p.point[static_cast<std::size_t>(k)].gap = gap;
+                touches = touches || gap <= 0.0;
+                output.max_penetration = std::max(output.max_penetration, -gap);
+                energy += gap < 0.0 ? 0.5 * q.stiffness * gap * gap : 0.0;
+                x += q.force * c.nx;
+                y += q.force * c.ny;
+                turn += q.force * q.turn;
+                power += q.force * q.drive;
+            }
+            x -= c.force * c.ny;
+            y += c.force * c.nx;
+            turn += c.force * c.slip_turn;
+            power += c.force * c.drive;
+            now.normal_force = c.pressing();
+            now.tangent_force = c.force;
+            now.slip_spring = spring_after(c, v);
+            energy += 0.5 * c.stiffness * now.slip_spring * now.slip_spring;
+            if (touches)
+                now.state = c.mode == FrictionMode::stick ? ContactState::sticking : ContactState::sliding;
+            outcomes.tell(p, now);
+        }
+        outcomes.end();
+        return {{x, y, turn}, dt_ * power, energy};
+    }
+
+    [[nodiscard]] Vec3 weight() const {
+        const double mass = model_.tool.mass;
+        return {mass * data_.gravity.x(), mass * data_.gravity.y(), 0.0};
+    }
+
+  private:
+    static double drive(const Body& other, const Vec2& point, const Vec2& n) {
+        return n.dot(velocity_at(other.velocity, point - other.pose.head<2>()));
+    }
+
+    // a hit that the velocity at the start foresees
+    [[nodiscard]] bool closes(const Point& p, bool continuing) const {
+        const double closing = -p.rate;
+        return closing > model_.settings.collision_speed && (p.gap > 0.0 || !continuing) &&
+               std::max(p.gap, 0.0) / closing <= dt_;
+    }
+    // what is apart has no damper
+    static double damping_of(const Point& p) { return p.gap > 0.0 ? 0.0 : p.damping; }
+
+    // the friction anchor moves only while sliding
+    [[nodiscard]] double spring_after(const Contact& c, const Row& v) const {
+        if (c.mode == FrictionMode::stick)
+            return c.spring + dt_ * c.slip_rate(v);
+        return c.mode == FrictionMode::off || c.stiffness <= 0.0 ? 0.0 : -c.force / c.stiffness;
+    }
+
+    // semi-implicit: forces of the start of the step
+    void start_forces(Vec3& right) {
+        const Row v = row_of(data_.velocity);
+        // the points of all contacts first, as the general path has it
+        for (int i = 0; i < count_; ++i) {
+            Contact& c = contact_[static_cast<std::size_t>(i)];
+            for (int k = 0; k < c.points; ++k) {
+                Point& p = c.point[static_cast<std::size_t>(k)];
+                p.force = p.gap < 0.0 ? std::max(0.0, -p.stiffness * p.gap - p.damping * p.rate) : 0.0;
+                const double push = dt_ * p.force;
+                right.x() += push * c.nx;
+                right.y() += push * c.ny;
+                right.z() += push * p.turn;
+            }
+        }
+        for (int i = 0; i < count_; ++i) {
+            Contact& c = contact_[static_cast<std::size_t>(i)];
+            c.mode = FrictionMode::off;
+            if (!c.rough)
+                continue;
+            c.rub(-c.stiffness * c.spring - c.damping * c.slip_rate(v));
+            const double push = dt_ * c.force;
+            right.x() -= push * c.ny;
+            right.y() += push * c.nx;
+            right.z() += push * c.slip_turn;
+        }
+    }
+
+    // a second solution of the step starts from the first guess again, as the general path does
+    void start_sets() {
+        slides_ = false;
+        if (!solved_) {
+            solved_ = true;
+            return;
+        }
+        for (int i = 0; i < count_; ++i) {
+            Contact& c = contact_[static_cast<std::size_t>(i)];
+            for (int k = 0; k < c.points; ++k)
+                c.point[static_cast<std::size_t>(k)].active = c.point[static_cast<std::size_t>(k)].gap < 0.0;
+            c.mode = c.rough ? FrictionMode::stick : FrictionMode::off;
+        }
+    }
+
+    void solve_sets(const Mat3& base, const Vec3& right, Vec3& v) {
+        Mat3 work = base;
+        v = right;
+        const bool symmetric = !slides_;
+        // work += (stiff along) row', v += push along
+        const auto add = [&](double stiff, double push, const Row& along, const Row& row) {
+            const double x = stiff * along.x;
+            const double y = stiff * along.y;
+            const double turn = stiff * along.turn;
+            work(0, 0) += x * row.x;
+            work(1, 0) += y * row.x;
+            work(2, 0) += turn * row.x;
+            work(1, 1) += y * row.y;
+            work(2, 1) += turn * row.y;
+            work(2, 2) += turn * row.turn;
+            if (!symmetric) {
+                work(0, 1) += x * row.y;
+                work(0, 2) += x * row.turn;
+                work(1, 2) += y * row.turn;
+            }
+            v.x() += push * along.x;
+            v.y() += push * along.y;
+            v.z() += push * along.turn;
+        };
+        for (int i = 0; i < count_; ++i) {
+            const Contact& c = contact_[static_cast<std::size_t>(i)];
+            const bool slides = slips(c.mode) && c.dynamic_friction > 0.0;
+            const double pull = slides ? slip_sign(c.mode) * c.dynamic_friction : 0.0;
+            for (int k = 0; k < c.points; ++k) {
+                const Point& p = c.point[static_cast<std::size_t>(k)];
+                if (!p.active)
+                    continue;
+                const double stiff = dt_ * (dt_ * p.stiffness + damping_of(p));
+                const double push = stiff * p.drive - dt_ * p.stiffness * p.gap;
+                const Row row{c.nx, c.ny, p.turn};
+                add(stiff, push, {c.nx - pull * c.ny, c.ny + pull * c.nx, p.turn + pull * c.slip_turn}, row);
+            }
+        }
+        for (int i = 0; i < count_; ++i) {
+            const Contact& c = contact_[static_cast<std::size_t>(i)];
+            if (c.mode != FrictionMode::stick)
+                continue;
+            const double stiff = dt_ * (dt_ * c.stiffness + c.damping);
+            const Row row{-c.ny, c.nx, c.slip_turn};
+            add(stiff, stiff * c.drive - dt_ * c.stiffness * c.spring, row, row);
+        }
+        if (symmetric)
+            solve_definite(work, v);
+        else
+            solve_pivoted(work, v);
+    }
+
+    // true when what was assumed holds with the velocity that follows
+    bool update_sets(const Row& v) {
+        bool same = true;
+        slides_ = false;
+        for (int i = 0; i < count_; ++i) {
+            Contact& c = contact_[static_cast<std::size_t>(i)];
+            for (int k = 0; k < c.points; ++k) {
+                Point& p = c.point[static_cast<std::size_t>(k)];
+                if (awaits_hits_ && p.gap > 0.0)
+                    continue; // what is apart and may be hit has no spring in this step
+                p.force =
+                    std::max(0.0, -p.stiffness * p.gap - (dt_ * p.stiffness + damping_of(p)) * c.rate(p, v));
+                same = same && p.active == (p.force > 0.0);
+                p.active = p.force > 0.0;
+            }
+            if (!c.rough)
+                continue;
+            const FrictionMode before = c.mode;
+            c.rub(-c.stiffness * c.spring - (dt_ * c.stiffness + c.damping) * c.slip_rate(v));
+            same = same && c.mode == before;
+            slides_ = slides_ || (slips(c.mode) && c.dynamic_friction > 0.0);
+        }
+        return same;
+    }
+
+    const Model& model_;
+    const Data& data_;
+    double dt_;
+    bool awaits_hits_;
+    int count_{0};
+    // a point does not press at the start of the step; a contact slides, so that the equation has no symmetry
+    bool any_open_{false};
+    bool slides_{false};
+    bool solved_{false};
+    std::array<Contact, k_max_patches> contact_;
+};
+
+// mean force of a coupling over a step that ends with the velocity v
+Wrench coupling(const RigidGrip& grip, const Pose& at, const HandInput& hand, double dt, const Vec3& v) {
+    const Vec3 rate = grip.velocity(v);
+    const Vec3 distance = hand.target - at - grip.velocity(dt * v);
+    Wrench force =
+        hand.stiffness.cwiseProduct(distance) + hand.damping.cwiseProduct(hand.target_velocity - rate);
+    if (!grip.pose)
+        force.z() = 0.0;
+    return force;
+}
+
+} // namespace
+
+bool step_in_contact(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output) {
+    const ToolModel& tool = model.tool;
+    RigidContacts contacts(model, data, dt);
+    if (!contacts.read())
+        return false;
+    const Vec2 lever = data.grip.point.isZero(0.0) ? data.grip.point : rotate(data.pose.z(), data.grip.point);
+    const RigidGrip grip{lever, data.grip.pose};
+    const Pose at(data.pose.x() + lever.x(), data.pose.y() + lever.y(), data.pose.z());
+    HandInput used = at_share(hand);
+    Vec3 v;
+    if (!contacts.solve(used, grip, at, v))
+        return false;
+    Wrench full = Wrench::Zero();
+    if (hand.held) {
+        full = coupling(grip, at, hand, dt, v);
+        if (hold_back(hand, full, used)) {
+            if (!contacts.solve(used, grip, at, v))
+                return false;
+            full = coupling(grip, at, hand, dt, v);
+        }
+    }
+    if (contacts.meets(row_of(v)))
+        return false;
+
+    ContactSystem& s = data.system;
+    s.points = 0;
+    s.patches = 0;
+    for (int i = 0; i < data.movable_count; ++i)
+        data.movable[static_cast<std::size_t>(i)].row = -1;
+    if (hand.held) {
+        output.full_coupling = full;
+        output.coupling = coupling(grip, at, used, dt, v) + used.force - hand.force;
+    }
+    const Vec3 weight = contacts.weight();
+    const Vec3 force = hand.held ? hand.force : Vec3(Vec3::Zero());
+    const double spin = data.velocity.z();
+    output.grip_mobility = grip.mobility(tool.mass, tool.inertia);
+    output.grip_bias = {-spin * spin * lever.x(), -spin * spin * lever.y(), 0.0};
+
+    data.velocity = v;
+    data.pose += dt * v;
+    place_tool(model, data);
+    move_neighbors(data, dt);
+    const auto [sum, wall_work, energy] = contacts.tell(row_of(v), data, output);
+    output.stored_energy = energy + tool_energy(model, data);
+    output.source_work = wall_work + dt * (weight.dot(v) + force.dot(grip.velocity(v)));
+    output.contact = {sum.x(), sum.y(), sum.z() - cross(lever, sum.head<2>())};
+    output.environment = output.contact + Wrench(weight.x(), weight.y(), -cross(lever, weight.head<2>()));
+    const Vec3 total = sum + weight;
+    output.grip_acceleration =
+        grip.velocity({total.x() / tool.mass, total.y() / tool.mass, total.z() / tool.inertia});
+    return true;
+}
+
+} // namespace haptics::local
