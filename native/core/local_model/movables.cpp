@@ -18,6 +18,16 @@
 // tool, over k_free_lead_ticks, but at no more than half the speed at which the two part. A body that
 // something unknown holds in place has another velocity in the environment, and is held here within a tick.
 //
+// Contacts. What holds a joined body may swing: a stack of heavy objects against a wall has modes of 5-20 Hz
+// with little damping, of which the environment, whose contacts are rigid, knows nothing. The velocity of the
+// echo is a tick and more old, half a swing when reports are lost, and the difference from it would drive the
+// swing instead of damping it. So a joined body is compared as it is now: the environment's velocity goes on
+// from v_s to v_s + u (u what the tool gave since the echo, by the mass) where nothing holds it, and stays at
+// v_s where walls take the push; the difference is the distance of the belief from the nearest point between
+// the two. The tool that carries a body's weight always has an untold push, -g times the lag, that gravity
+// takes away again; counted as velocity to come it would leave the body in the environment sinking for good.
+// So the part of the mean push that opposes gravity, times the mean lag, is left out of u.
+//
 // Shift. A body that is joined to the tool works off the rest of a difference e with a velocity of its own,
 // -e'(t) of the cubic that ends with e = e' = 0, so that what is in its way meets its mass. Moved without
 // asking, it would be a wall of infinite mass, and its contacts would gain K e^2 / 2.
@@ -39,6 +49,10 @@ constexpr double k_tolerance = 1e-3;
 // weight of the last difference of velocities in their mean, and the part of one that is taken in any case
 constexpr double k_surprise = 0.25;
 constexpr double k_least_trust = 0.2;
+// beliefs over which the push of the tool and the time until they come back are averaged
+constexpr std::int32_t k_push_memory = 5;
+constexpr std::int32_t k_lag_memory = 20;
+constexpr double k_least_lag = 1e-6;
 constexpr double k_turn = 6.28318530717958647692;
 
 const MovableBelief* find_echo(const Neighborhood& n, const MovableBelief& belief) {
@@ -53,6 +67,29 @@ const MovableBelief* find_echo(const Neighborhood& n, const MovableBelief& belie
 // size of a motion in the metric of the body's mass, in terms of its translation
 double size_of(const Vec3& motion, const Body& body) {
     return std::sqrt(motion.head<2>().squaredNorm() + body.inertia / body.mass * motion.z() * motion.z());
+}
+
+// what the environment's velocity, once it has heard all, lacks to the belief of a body that contacts hold
+Twist present_surprise(MovableState& m, const Body& seen, const MovableBelief& echo, const Vec2& gravity,
+                       double now) {
+    const MovableBelief& b = m.belief;
+    const Vec3 metric(1.0, 1.0, seen.inertia / seen.mass);
+    Twist untold = (b.given - echo.given).cwiseQuotient(seen.mass * metric);
+
+    // what the tool bears of the weight stays untold, but changes no velocity
+    const double lag = std::max(now - echo.time, k_least_lag);
+    m.heard = std::min(m.heard + 1, k_lag_memory);
+    m.lag += (lag - m.lag) / m.heard;
+    m.push += (untold / lag - m.push) / std::min(m.heard, k_push_memory);
+    const double fall = gravity.squaredNorm();
+    if (fall > 0.0)
+        untold.head<2>() += std::clamp(-m.push.head<2>().dot(gravity) / fall, 0.0, 1.0) * m.lag * gravity;
+
+    const Twist ahead = b.velocity - m.shift_velocity + m.pending_velocity - seen.velocity;
+    const double size = untold.dot(metric.cwiseProduct(untold));
+    const double taken =
+        size > 0.0 ? std::clamp(ahead.dot(metric.cwiseProduct(untold)) / size, 0.0, 1.0) : 0.0;
+    return taken * untold - ahead;
 }
 
 // the part of a difference of velocities that is taken over at once
@@ -87,12 +124,15 @@ void correct(MovableState& m, const Body& seen, const Neighborhood& n, double no
     Pose difference = seen.pose - echo->pose - (n.time - echo->time) * echo->velocity - moved + m.lead;
     difference.z() = std::remainder(difference.z(), k_turn);
     if (m.joined_time >= m.heard_time - n.tick) {
+        surprise = present_surprise(m, seen, *echo, n.gravity, now);
         const double part = trust(surprise, seen, m);
         const double window = std::max(n.time - m.heard_time, 0.0) + n.tick;
         const Pose lead = lead_part(m, seen, *echo, window, difference) * difference;
         surprise *= part;
         m.lead -= lead;
         difference -= lead;
+    } else {
+        m.heard = 0;
     }
     m.pending_pose += difference + (now - n.time) * surprise;
     m.pending_velocity += surprise;

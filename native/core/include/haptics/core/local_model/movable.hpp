@@ -56,6 +56,11 @@ struct MovableState {
     /// Mean of the last differences of velocity from the environment, and of their sizes, m/s.
     Twist surprise{0.0, 0.0, 0.0};
     double surprise_size{0.0};
+    /// While joined: how many beliefs came back, mean time since they were sent, s, and mean acceleration
+    /// that the tool gives the body.
+    std::int32_t heard{0};
+    double lag{0.0};
+    Vec3 push{0.0, 0.0, 0.0};
     /// Last step in which `given` changed.
     std::uint64_t given_step{0};
 };
