@@ -1,21 +1,26 @@
 // The path of a neighbor that the scene moves.
 //
-// Extrapolation. At the age t of a snapshot the pose is x + v t + a t^2 / 2 + j t^3 / 6, up to t = reach (two
-// ticks and the known latency). From there the body is brought to rest within k_rest = 50 ms: with
-// u = (t - reach) / k_rest its speed falls as 1 - 3 u^2 + 2 u^3 without a kink, and it travels
+// Extrapolation. At the age t of a snapshot the pose is x + v t + a t^2 / 2 + j t^3 / 6 + s t^4 / 24, up to
+// t = reach (two ticks and the known latency). From there the body is brought to rest within k_rest = 50 ms:
+// with u = (t - reach) / k_rest its speed falls as 1 - 3 u^2 + 2 u^3 without a kink, and it travels
 // v k_rest (u - u^3 + u^4 / 2) more.
 //
 // Derivatives. With x and v alone the error grows as a t^2 / 2: 0.1 m/s^2 seen 100 ms late are 0.5 mm, 7 N on
-// a wall of 15000 N/m, and all of it is corrected anew at every tick. The rate of change of v over the last
-// two snapshots, s = (v_k - v_k-1) / dt, is the acceleration half a dt ago, and the change of s the jerk:
-//     j = (s_k - s_k-1) / ((dt_k + dt_k-1) / 2),  a = s_k + j (dt_k + c tick) / 2.
-// They are used only where the motion is smooth: the weight w = 2 - 3 |s_k - s_k-1| / S, within 0..1, with S
-// the size of s of late (fading over k_memory), is 0 when a body starts, stops, turns back or is only
-// noise, and 1 once two rates agree within a third.
-// A scene that differences poses tells v half a tick late. Told velocities are then short by c s tick / 2
-// with c = 1 (c = 0 when they are true), which shows in the distance travelled:
-//     (x_k - x_k-1) / dt - (v_k + v_k-1) / 2 = c s tick / 2;
-// c is the least-squares fit of that over the last k_late_memory or so snapshots, within 0..1.
+// a wall of 15000 N/m, and all of it is corrected anew at every tick. The told velocities v_0 (now), v_1, ...
+// have the divided differences d1 = (v_0 - v_1) / (t_0 - t_1), d2, d3, and Newton's polynomial through them
+// has at t_0, with p_i = t_0 - t_i,
+//     a = d1 + p_1 d2 + p_1 p_2 d3,  j = 2 d2 + 2 (p_1 + p_2) d3,  s = 6 d3.
+// They are used only where the motion is smooth: the weight w = 2 - 3 |d1 - d1'| / S, within 0..1, with d1'
+// the slope before and S the size of slopes of late (fading over k_memory), is 0 when a body starts, stops,
+// turns back or is only noise, and 1 once two rates agree within a third. Poses are rounded somewhere (15 nm
+// in a scene of 1000 pixels), and a term of order k magnifies the noise of a velocity by (t / spacing)^k. So
+// the last velocities one after the other, with d3, are taken where d3 agrees in the same way with the one
+// before, now and of late; where it does not, velocities that are k_apart reaches from each other, without
+// d3. A scene that differences poses tells v half a tick late. Told velocities are then short by c a tick / 2
+// with c = 1 (c = 0 when they are true), which shows in the distance travelled, with a of half a step ago:
+//     (x_0 - x_1) / dt - (v_0 + v_1) / 2 + d2 dt^2 / 6 = c a tick / 2;
+// c is the least-squares fit of that over the last k_late_memory seconds or so, within 0..1, and the
+// derivatives above hold c tick / 2 before the snapshot.
 //
 // Joining. A new snapshot seldom puts a body where it is shown. The difference e at the time of taking, with
 // its first two derivatives, is taken away over one tick, T, by the polynomial of degree 5 in u that starts
@@ -41,7 +46,63 @@ constexpr double k_rest = 0.05;
 constexpr double k_back = 0.1;
 // time in which the size of past accelerations is forgotten, s
 constexpr double k_memory = 0.7;
-constexpr double k_late_memory = 10.0;
+constexpr double k_late_memory = 1.0;
+// how far apart told velocities are used that are not exact, in terms of the reach
+constexpr double k_apart = 0.2;
+
+void remember(const Track& before, Track& track) {
+    track.past_count = std::min(before.past_count + 1, k_past_velocities);
+    track.past[0] = {before.time, before.told};
+    std::copy_n(before.past.begin(), track.past_count - 1, track.past.begin() + 1);
+}
+
+// Divided differences of the last told velocities that are at least `apart` s from each other; what takes
+// more of them than there are is 0.
+class Differences {
+  public:
+    Differences(const Track& t, double apart) {
+        add({t.time, t.told});
+        for (std::int32_t i = 0; i < t.past_count && count_ < k_nodes; ++i) {
+            const PastVelocity& p = t.past[static_cast<std::size_t>(i)];
+            if (time_[static_cast<std::size_t>(count_ - 1)] - p.time >= apart)
+                add(p);
+        }
+    }
+    [[nodiscard]] int count() const { return count_; }
+    // of the order `k`, over the nodes from `i` on, the newest being 0
+    [[nodiscard]] const Vec3& of(int k, int i) const {
+        return table_[static_cast<std::size_t>(k)][static_cast<std::size_t>(i)];
+    }
+    // from the newest to node `i`, s
+    [[nodiscard]] double span(int i) const { return time_[0] - time_[static_cast<std::size_t>(i)]; }
+
+  private:
+    static constexpr int k_nodes = 5;
+
+    void add(const PastVelocity& p) {
+        const auto n = static_cast<std::size_t>(count_++);
+        time_[n] = p.time;
+        table_[0][n] = p.told;
+        for (std::size_t k = 1; k <= n; ++k)
+            table_[k][n - k] = (table_[k - 1][n - k] - table_[k - 1][n - k + 1]) / (time_[n - k] - time_[n]);
+    }
+
+    int count_{0};
+    std::array<double, k_nodes> time_{};
+    std::array<std::array<Vec3, k_nodes>, k_nodes> table_{zero_table()};
+
+    static std::array<std::array<Vec3, k_nodes>, k_nodes> zero_table() {
+        std::array<std::array<Vec3, k_nodes>, k_nodes> table;
+        for (auto& row : table)
+            row.fill(Vec3::Zero());
+        return table;
+    }
+};
+
+// 1 where a difference agrees with the one before within a third of its recent size, 0 where by less than two
+double agreement(double change, double size) {
+    return size > 0.0 ? std::clamp(2.0 - 3.0 * change / size, 0.0, 1.0) : 0.0;
+}
 
 } // namespace
 
@@ -49,32 +110,55 @@ void estimate(const Track& before, Track& track) {
     const double dt = track.time - before.time;
     if (dt <= 0.0 || dt > k_memory)
         return;
-    track.interval = dt;
-    track.slope = (track.told - before.told) / dt;
-    const Vec3 change = track.slope - before.slope;
-    const Vec3 drift = (track.pose - before.pose) / dt - 0.5 * (track.told + before.told);
-    const Vec3 half = 0.5 * track.tick * track.slope;
-    const Vec3 jerk =
-        before.interval > 0.0 ? Vec3(change / (0.5 * (dt + before.interval))) : Vec3(Vec3::Zero());
+    remember(before, track);
+    const Differences fine(track, 0.0);
+    const Differences coarse(track, k_apart * track.reach);
+    const double keep = std::max(0.0, 1.0 - dt / k_late_memory);
+    const double fade = 1.0 - dt / k_memory;
+    // the trapezoid's rule misses a jerk
+    const Vec3 drift =
+        (track.pose - before.pose) / dt - 0.5 * (track.told + before.told) + dt * dt / 6.0 * fine.of(2, 0);
+    const Vec3 half = 0.5 * track.tick * fine.of(1, 0);
     // translation and turning are judged apart
     for (const std::size_t part : {0U, 1U}) {
         const Vec3 axes = part == 0 ? Vec3(1.0, 1.0, 0.0) : Vec3(0.0, 0.0, 1.0);
         const auto size = [&axes](const Vec3& v) { return v.cwiseProduct(axes).norm(); };
-        // how late are the told velocities?
-        constexpr double k_keep = 1.0 - 1.0 / k_late_memory;
-        track.late_sum[part] = k_keep * before.late_sum[part] + drift.dot(half.cwiseProduct(axes));
-        track.late_weight[part] = k_keep * before.late_weight[part] + half.dot(half.cwiseProduct(axes));
-        // is the motion smooth?
-        track.size[part] =
-            std::max({size(track.slope), size(before.slope), (1.0 - dt / k_memory) * before.size[part]});
-        if (before.interval <= 0.0 || track.size[part] <= 0.0 || track.late_weight[part] <= 0.0)
+        track.slope_size[part] =
+            std::max({size(fine.of(1, 0)), size(fine.of(1, 1)), fade * before.slope_size[part]});
+        track.third_size[part] =
+            std::max({size(fine.of(3, 0)), size(fine.of(3, 1)), fade * before.third_size[part]});
+        track.third_change[part] =
+            std::max(size(fine.of(3, 0) - fine.of(3, 1)), fade * before.third_change[part]);
+        track.late_sum[part] = keep * before.late_sum[part];
+        track.late_weight[part] = keep * before.late_weight[part];
+        if (fine.count() < 3)
             continue;
-        const double late = std::clamp(track.late_sum[part] / track.late_weight[part], 0.0, 1.0);
-        const double weight = std::clamp(2.0 - 3.0 * size(change) / track.size[part], 0.0, 1.0);
-        const Vec3 acceleration = track.slope + 0.5 * (dt + late * track.tick) * jerk;
-        track.jerk += weight * jerk.cwiseProduct(axes);
-        track.acceleration += weight * acceleration.cwiseProduct(axes);
-        track.velocity += weight * late * half.cwiseProduct(axes);
+        // how late are the told velocities?
+        track.late_sum[part] += dt * drift.dot(half.cwiseProduct(axes));
+        track.late_weight[part] += dt * half.dot(half.cwiseProduct(axes));
+        if (track.late_weight[part] <= 0.0)
+            continue;
+        const double late =
+            0.5 * track.tick * std::clamp(track.late_sum[part] / track.late_weight[part], 0.0, 1.0);
+        // is the motion smooth, and are the told velocities exact?
+        const double exact =
+            fine.count() < 5 ? 0.0 : agreement(track.third_change[part], track.third_size[part]);
+        const auto add = [&](const Differences& d, double share, const Vec3& third) {
+            if (d.count() < 3)
+                return;
+            const Vec3 use = share * agreement(size(d.of(1, 0) - d.of(1, 1)), track.slope_size[part]) * axes;
+            // the derivatives at the snapshot, `late` after what was told
+            const Vec3 snap = 6.0 * third;
+            const Vec3 jerk = 2.0 * (d.of(2, 0) + (d.span(1) + d.span(2)) * third);
+            const Vec3 acceleration = d.of(1, 0) + d.span(1) * (d.of(2, 0) + d.span(2) * third);
+            track.snap += use.cwiseProduct(snap);
+            track.jerk += use.cwiseProduct(jerk + late * snap);
+            track.acceleration += use.cwiseProduct(acceleration + late * (jerk + 0.5 * late * snap));
+            track.velocity +=
+                use.cwiseProduct(late * (acceleration + 0.5 * late * (jerk + late / 3.0 * snap)));
+        };
+        add(fine, exact, fine.of(3, 0));
+        add(coarse, 1.0 - exact, Vec3::Zero());
     }
 }
 
@@ -83,8 +167,11 @@ PathPoint extrapolated(const Track& t, double time) {
         return {t.pose, t.velocity, Vec3::Zero()};
     const double age = time - t.time;
     const double run = std::clamp(age, -t.reach, t.reach); // a tick's own time may lie ahead of the loop's
-    PathPoint p{t.pose + run * (t.velocity + run * (0.5 * t.acceleration + run / 6.0 * t.jerk)),
-                t.velocity + run * (t.acceleration + 0.5 * run * t.jerk), t.acceleration + run * t.jerk};
+    const auto at = [run, &t](double a, double j, double s) {
+        return Vec3(a * t.acceleration + run * (j * t.jerk + run * s * t.snap));
+    };
+    PathPoint p{t.pose + run * (t.velocity + run * at(1.0 / 2.0, 1.0 / 6.0, 1.0 / 24.0)),
+                t.velocity + run * at(1.0, 1.0 / 2.0, 1.0 / 6.0), at(1.0, 1.0, 1.0 / 2.0)};
     if (age <= t.reach)
         return p;
     const double u = std::min((age - t.reach) / k_rest, 1.0);

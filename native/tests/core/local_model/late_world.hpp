@@ -75,6 +75,8 @@ struct Line {
     double lost{0.0};
     /// The environment knows no velocities and takes differences of poses, as Godot's does.
     bool differences{false};
+    /// What coordinates are rounded to, m (0: they are not).
+    double grain{0.0};
 };
 
 /// How the local model uses what comes.
@@ -196,8 +198,16 @@ class LateWorld {
              use_ == Use::every_step ? k_step : 1.0 / line_.rate);
     }
 
+    [[nodiscard]] Place seen_at(double made) const {
+        Place at = wall_at(motion_, made);
+        if (line_.grain > 0.0 && use_ != Use::every_step)
+            for (int i = 0; i < 2; ++i)
+                at.pose(i) = line_.grain * std::round(at.pose(i) / line_.grain);
+        return at;
+    }
+
     void take(double made, std::uint64_t number, double tick) {
-        const Place at = wall_at(motion_, made);
+        const Place at = seen_at(made);
         Body& b = next_->bodies.body[0];
         next_->sequence = number;
         next_->time = made;
@@ -205,7 +215,7 @@ class LateWorld {
         b.pose = at.pose;
         b.velocity = at.twist;
         if (line_.differences && use_ != Use::every_step)
-            b.velocity = (at.pose - wall_at(motion_, made - tick).pose) / tick;
+            b.velocity = (at.pose - seen_at(made - tick).pose) / tick;
         if (use_ == Use::hold_last)
             b.velocity.setZero();
         take_neighborhood(*next_, *data_);

@@ -4,8 +4,16 @@
 #include <haptics/core/types.hpp>
 
 #include <array>
+#include <cstdint>
 
 namespace haptics {
+
+/// Velocity that an earlier snapshot told, and its time, s.
+struct PastVelocity {
+    double time;
+    Twist told;
+};
+inline constexpr std::int32_t k_past_velocities = 8;
 
 /// Path of a neighbor that the scene moves, and how much of a neighbor is there while it fades in or out.
 /// Derivations are in native/core/local_model/path.cpp.
@@ -18,6 +26,7 @@ struct Track {
     Twist velocity{0.0, 0.0, 0.0};
     Vec3 acceleration{0.0, 0.0, 0.0};
     Vec3 jerk{0.0, 0.0, 0.0};
+    Vec3 snap{0.0, 0.0, 0.0};
     /// Age up to which the body is extrapolated at full speed, s.
     double reach{2.0 / 60.0};
     /// The scene moves the body; false for a movable that the local model moves.
@@ -33,13 +42,15 @@ struct Track {
     Twist offset_velocity{0.0, 0.0, 0.0};
     Vec3 offset_acceleration{0.0, 0.0, 0.0};
 
-    /// Memory of the estimate: velocity as the snapshot told it, its mean rate of change since the snapshot
-    /// before and the time between the two, and for translation and turning the recent size of that rate
-    /// and the sums that tell how late the told velocities are.
+    /// Memory of the estimate: velocity as the snapshot told it, times and told velocities of the snapshots
+    /// before, newest first, and for translation and turning the recent sizes of its first and third
+    /// differences and of the changes of the latter, and the sums that tell how late the told velocities are.
     Twist told{0.0, 0.0, 0.0};
-    Vec3 slope{0.0, 0.0, 0.0};
-    double interval{0.0};
-    std::array<double, 2> size{0.0, 0.0};
+    std::int32_t past_count{0};
+    std::array<PastVelocity, k_past_velocities> past;
+    std::array<double, 2> slope_size{0.0, 0.0};
+    std::array<double, 2> third_size{0.0, 0.0};
+    std::array<double, 2> third_change{0.0, 0.0};
     std::array<double, 2> late_sum{0.0, 0.0};
     std::array<double, 2> late_weight{0.0, 0.0};
 
