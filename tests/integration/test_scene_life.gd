@@ -279,7 +279,16 @@ func _edit_at_random(mode: HapticWorld2D.Mode, edits: int) -> void:
 	assert_eq(_world.get_neighbor_count(), 0)
 	assert_eq(pairs[0], pairs[1])
 	assert_gt(pairs[0], 0)
+	_let_concave_pass()
 	print("%d edits, %d contacts: %s" % [edits, pairs[0], editor.made])
+
+
+# the engine says it of rigid bodies and areas whose concave shapes come upon others; they are felt
+# like all the others
+func _let_concave_pass() -> void:
+	for error: GutTrackedError in get_errors():
+		if error.contains_text("Collisions between two concave shapes are not supported"):
+			error.handled = true
 
 
 func _ask_everything(edit: int) -> void:

@@ -4,6 +4,7 @@ extends RefCounted
 const Scene := preload("res://tests/support/haptic_scene.gd")
 const Tiles := preload("res://tests/support/tiles.gd")
 const Linkages := preload("res://tests/support/linkages.gd")
+const Outlines := preload("res://tests/support/outlines.gd")
 
 const _MOST_BODIES := 12
 const _MOST_LINKAGES := 2
@@ -36,6 +37,9 @@ var _kinds: Array[Callable] = [
 	_change_shape,
 	_share_shape,
 	_add_shape,
+	_add_outline,
+	_change_outline,
+	_change_outline,
 	_remove_shape,
 	_switch_shape,
 	_switch_one_way,
@@ -114,13 +118,17 @@ func _pick() -> CollisionObject2D:
 	return _bodies[_random.randi_range(0, _bodies.size() - 1)]
 
 
-# a random shape of a random body; null when there is none
-func _pick_shape() -> CollisionShape2D:
+# a random CollisionShape2D or CollisionPolygon2D of a random body; null when there is none
+func _pick_holder() -> Node2D:
 	var body := _pick()
 	if body == null or body.get_child_count() == 0:
 		return null
 	var index := _random.randi_range(0, body.get_child_count() - 1)
-	return body.get_child(index) as CollisionShape2D
+	return body.get_child(index) as Node2D
+
+
+func _pick_shape() -> CollisionShape2D:
+	return _pick_holder() as CollisionShape2D
 
 
 func _at(spread: float) -> Vector2:
@@ -136,9 +144,8 @@ func _parent() -> Node2D:
 	return _parents[_random.randi_range(0, _parents.size() - 1)]
 
 
-# no concave shapes: among the others the engine reports errors of its own broad phase for them
 func _shape() -> Shape2D:
-	match _random.randi_range(0, 4):
+	match _random.randi_range(0, 5):
 		0:
 			var circle := CircleShape2D.new()
 			circle.radius = _random.randf_range(5.0, 25.0)
@@ -160,6 +167,8 @@ func _shape() -> Shape2D:
 				points.append(_at(30.0))
 			convex.set_point_cloud(points)
 			return convex
+		4:
+			return Outlines.make_segments(_random)
 	var box := RectangleShape2D.new()
 	var width := _random.randf_range(5.0, 60.0)
 	box.size = Vector2(width, _random.randf_range(5.0, 30.0))
@@ -279,22 +288,37 @@ func _add_shape() -> void:
 		body.add_child(_holder())
 
 
+func _add_outline() -> void:
+	var body := _pick()
+	if body != null and body.get_child_count() < 4:
+		body.add_child(Outlines.make(_random))
+
+
+func _change_outline() -> void:
+	var holder := _pick_holder()
+	if holder is CollisionPolygon2D:
+		Outlines.change(holder as CollisionPolygon2D, _random)
+	elif holder != null and (holder as CollisionShape2D).shape is ConcavePolygonShape2D:
+		var concave := (holder as CollisionShape2D).shape as ConcavePolygonShape2D
+		concave.segments = Outlines.make_segments(_random).segments
+
+
 func _remove_shape() -> void:
-	var holder := _pick_shape()
+	var holder := _pick_holder()
 	if holder != null and holder.get_parent().get_child_count() > 1:
 		holder.free()
 
 
 func _switch_shape() -> void:
-	var holder := _pick_shape()
+	var holder := _pick_holder()
 	if holder != null:
-		holder.disabled = not holder.disabled
+		holder.set(&"disabled", not (holder.get(&"disabled") as bool))
 
 
 func _switch_one_way() -> void:
-	var holder := _pick_shape()
+	var holder := _pick_holder()
 	if holder != null and not holder.get_parent() is Area2D:
-		holder.one_way_collision = not holder.one_way_collision
+		holder.set(&"one_way_collision", not (holder.get(&"one_way_collision") as bool))
 
 
 func _change_layers() -> void:
