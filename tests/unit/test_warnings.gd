@@ -230,15 +230,6 @@ class TestBodies:
 		assert_string_contains(_first(await _check(object)), "The scale is (2.0, 1.0)")
 		assert_push_error("Object: The scale is (2.0, 1.0)")
 
-	func test_an_object_that_falls_in_a_world_without_gravity() -> void:
-		var object := Scene.make_object(Vector2.ZERO, Vector2(50, 50), 0.1)
-		object.gravity_scale = 1.0
-		ProjectSettings.set_setting("physics/2d/default_gravity", 980.0)
-		var problems: PackedStringArray = await _check(object)
-		ProjectSettings.set_setting("physics/2d/default_gravity", 0.0)
-		assert_string_contains(_first(problems), "It falls with 980 px/s²")
-		assert_push_error("It falls with 980 px/s²")
-
 	# before physics takes the scale away
 	func _check(object: HapticObject2D) -> PackedStringArray:
 		var nodes: Array[Node] = [Scene.make_world(), Scene.make_tool(Vector2(-800, 0)), object]

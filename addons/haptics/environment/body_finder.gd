@@ -43,12 +43,13 @@ func _init(units: HapticUnits, remove: Callable) -> void:
 	_query.collide_with_areas = true
 
 
-## The bodies within the discs (canvas: x, y, radius in px), each grown by `growth` px, that `mask`
-## selects, in the order in which they were met first: the same in every run.
+## The bodies within the discs (canvas: x, y, radius in px), each grown by `growth` px, that `mask` or
+## `more` selects, in the order in which they were met first: the same in every run. Of tiles those
+## that `mask` selects.
 func find(
-	space: PhysicsDirectSpaceState2D, discs: Array[Vector3], growth: float, mask: int
+	space: PhysicsDirectSpaceState2D, discs: Array[Vector3], growth: float, mask: int, more: int
 ) -> Array[BodyReader]:
-	_query.collision_mask = mask
+	_query.collision_mask = mask | more
 	var keys := PackedInt64Array()
 	var answers: Array[Array] = []
 	for disc: Vector3 in discs:

@@ -31,8 +31,8 @@ var problems: PackedStringArray = []
 var extent := 0.0
 
 var _units: HapticUnits
-# x, y, angle, vx, vy, angular velocity
-var _state: PackedFloat64Array = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+# x, y, angle, vx, vy, angular velocity, free fall x, y
+var _state: PackedFloat64Array = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
 var _tick := -1
 # stood where it stands at the tick before
 var _rests := false
@@ -58,11 +58,17 @@ func describe(fallback: HapticSurface) -> Dictionary:
 	_read_shapes(reader)
 	problems = reader.problems
 	extent = reader.extent()
-	return {
+	var description := {
 		"kind": kind(),
 		"surface": surface(fallback).to_settings(),
 		"shapes": reader.shapes,
+		"layer": _layer(),
 	}
+	if node is PhysicsBody2D:
+		description["mask"] = (node as PhysicsBody2D).collision_mask
+	if is_finite(_friction()):
+		description["scene_friction"] = _friction()
+	return description
 
 
 ## True while all of its shapes are switched off: then nothing is there to touch, and nothing wrong.
@@ -107,8 +113,8 @@ func kind() -> String:
 	return "fixed"
 
 
-## Pose and velocity at tick number `tick`: x, y, angle, vx, vy, angular velocity. Not to be
-## changed.
+## Pose and velocity at tick number `tick`: x, y, angle, vx, vy, angular velocity, and with what
+## acceleration it falls where nothing holds it: x, y. Not to be changed.
 func read_state(tick: int, seconds: float) -> PackedFloat64Array:
 	var at := node.global_transform
 	# most bodies rest at most ticks
@@ -146,11 +152,25 @@ func _read_shapes(reader: ShapeReader) -> void:
 	reader.read(node as CollisionObject2D, scaling())
 
 
+# layers that it is on
+func _layer() -> int:
+	return (node as CollisionObject2D).collision_layer
+
+
+# friction in the engine's own contacts; not a number for what the engine does not solve
+func _friction() -> float:
+	var body := node as PhysicsBody2D
+	if body == null:
+		return NAN
+	return PhysicsServer2D.body_get_param(body.get_rid(), PhysicsServer2D.BODY_PARAM_FRICTION)
+
+
 # what the description depends on
 func _features() -> Array:
 	var own := SurfaceReader.find_own(node)
 	var features: Array = [kind(), scaling(), own.get_instance_id() if own != null else 0]
 	var body := node as CollisionObject2D
+	features.append_array([body.collision_layer, body.collision_mask, _friction()])
 	for owner_id: int in body.get_shape_owners():
 		features.append(owner_id)
 		features.append(body.is_shape_owner_disabled(owner_id))

@@ -15,6 +15,7 @@ func kind() -> String:
 func describe(fallback: HapticSurface) -> Dictionary:
 	var link := node as HapticLink2D
 	var description := super.describe(fallback)
+	description["mask"] = link.collision_mask
 	description["mass"] = link.mass
 	description["density"] = link.density
 	description["inertia"] = link.inertia
@@ -31,7 +32,7 @@ func read_state(tick: int, seconds: float) -> PackedFloat64Array:
 		is_dirty = true
 	if mover == null:
 		return super.read_state(tick, seconds)
-	_state = mover.state_of(node as HapticLink2D)
+	_state = mover.state_of(node as HapticLink2D) + PackedFloat64Array([0.0, 0.0])
 	_seen_at = node.global_transform
 	_tick = tick
 	return _state

@@ -4,6 +4,8 @@ extends "body_reader.gd"
 
 # stands for a body that cannot turn, kg m²
 const _NO_TURNING := 1.0e3
+# the engine gives concave outlines no inertia but what it rounds: a radius of gyration below this, px
+const _LEAST_RADIUS := 1.0e-3
 
 
 func kind() -> String:
@@ -33,6 +35,7 @@ func read_state(tick: int, seconds: float) -> PackedFloat64Array:
 	if body.freeze:
 		return super.read_state(tick, seconds)
 	_rests = false
+	_fall(body)
 	var at := body.global_transform
 	if body.sleeping and _seen_at == at and _seen_frame == _units.frame:
 		_set_velocity(0.0, 0.0, 0.0)
@@ -52,6 +55,17 @@ func take_impulse(x: float, y: float, angular: float, time_scale: float) -> void
 	body.apply_central_impulse(_units.impulse_to_canvas(x, y) / time_scale)
 	if not body.lock_rotation:
 		body.apply_torque_impulse(_units.angular_impulse_to_canvas(angular) / time_scale)
+
+
+# gravity as the engine has it for this body (its areas, its scale), and its constant force
+func _fall(body: RigidBody2D) -> void:
+	var fall := body.constant_force / body.mass
+	var state := PhysicsServer2D.body_get_direct_state(body.get_rid())
+	if state != null and not body.custom_integrator:
+		fall += state.total_gravity
+	var acceleration := _units.velocity_to_meters(fall)
+	_state[6] = acceleration[0]
+	_state[7] = acceleration[1]
 
 
 # rigid bodies lose their scale anyway; a warning says so
@@ -74,6 +88,8 @@ func _inertia(body: RigidBody2D) -> float:
 	if body.inertia > 0.0:
 		return _units.inertia_to_meters(body.inertia)
 	var state := PhysicsServer2D.body_get_direct_state(body.get_rid())
-	if state == null or state.inverse_inertia <= 0.0:
+	if state == null or state.inverse_inertia * body.mass * _LEAST_RADIUS * _LEAST_RADIUS > 1.0:
+		return 0.0
+	if state.inverse_inertia <= 0.0:
 		return 0.0
 	return _units.inertia_to_meters(1.0 / state.inverse_inertia)

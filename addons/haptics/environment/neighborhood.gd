@@ -30,8 +30,9 @@ var _finder: BodyFinder
 # numbers of bodies that are made of a resource, by its instance id
 var _watchers: Dictionary[int, Dictionary] = {}
 var _tick := 0
-# how much farther than the discs the last snapshot wanted to see, px
+# how much farther than the discs the last snapshot wanted to see, px, and what its movables meet
 var _growth := 0.0
+var _met_by_movables := 0
 
 
 func _init(native: Gateway, units: HapticUnits) -> void:
@@ -40,12 +41,12 @@ func _init(native: Gateway, units: HapticUnits) -> void:
 	_finder = BodyFinder.new(units, _native.remove_body)
 
 
-## Publishes what lies within the discs (canvas: x, y, radius in px) and what `mask` selects.
-## Returns what is wrong, each with the path of its node.
+## Publishes what lies within the discs (canvas: x, y, radius in px) and what `masks` select, of a
+## linkage those of each link. Returns what is wrong, each with the path of its node.
 func publish(
 	world_2d: World2D,
 	around: Array[Vector3],
-	mask: int,
+	masks: PackedInt64Array,
 	tick_seconds: float,
 	time_scale: float,
 	gravity: PackedFloat64Array
@@ -57,7 +58,12 @@ func publish(
 	var states := PackedFloat64Array()
 	var touched := _native.get_touched()
 	discs = around.duplicate()
-	var readers := _finder.find(world_2d.direct_space_state, around, _growth, mask)
+	var mask := 0
+	for bits: int in masks:
+		mask |= bits
+	var readers := _finder.find(
+		world_2d.direct_space_state, around, _growth, mask, _met_by_movables
+	)
 	_surround_movables(readers)
 	for reader: BodyReader in readers:
 		var turn := _tick + reader.id
@@ -75,12 +81,18 @@ func publish(
 		states.append_array(state)
 	if time_scale != 1.0:
 		for i: int in states.size():
-			if i % 6 > 2:
-				states[i] *= time_scale
+			var place := i % 8
+			if place > 2:
+				states[i] *= time_scale if place < 6 else time_scale * time_scale
 	near_count = ids.size()
 	problems.append_array(_finder.take_problems())
 	for text: String in _native.submit(
-		ids, states, clampf(tick_seconds / time_scale, 0.001, 1.0), gravity, _to_meters(discs)
+		ids,
+		states,
+		clampf(tick_seconds / time_scale, 0.001, 1.0),
+		gravity,
+		_to_meters(discs),
+		masks
 	):
 		problems.append(_named(text))
 	left_out = _native.get_left_out()
@@ -130,10 +142,12 @@ func clear() -> void:
 # are looked for that much farther out.
 func _surround_movables(readers: Array[BodyReader]) -> void:
 	_growth = 0.0
+	_met_by_movables = 0
 	var around: Array[Vector3] = discs.duplicate()
 	for reader: BodyReader in readers:
 		if reader.kind() != "movable" or not is_finite(reader.extent):
 			continue
+		_met_by_movables |= (reader.node as CollisionObject2D).collision_mask
 		var at := reader.node.global_position
 		var radius := _units.to_pixels(reader.extent + Reach.MARGIN)
 		var growth := INF

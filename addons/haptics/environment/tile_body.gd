@@ -25,7 +25,30 @@ func surface(fallback: HapticSurface) -> HapticSurface:
 
 
 func _features() -> Array:
-	return [kind(), scaling()]
+	return [kind(), scaling(), _layer(), _friction()]
+
+
+# of all physics layers that are read
+func _layer() -> int:
+	var tiles := (node as TileMapLayer).tile_set
+	var bits := 0
+	for index: int in tiles.get_physics_layers_count():
+		if physics_layers & (1 << index) != 0:
+			bits |= tiles.get_physics_layer_collision_layer(index)
+	return bits
+
+
+# of the first physics layer that is read
+func _friction() -> float:
+	var tiles := (node as TileMapLayer).tile_set
+	for index: int in tiles.get_physics_layers_count():
+		if physics_layers & (1 << index) == 0:
+			continue
+		var material := tiles.get_physics_layer_physics_material(index)
+		if material != null:
+			return -material.friction if material.rough else material.friction
+		break
+	return 1.0
 
 
 func _read_shapes(reader: ShapeReader) -> void:

@@ -61,22 +61,6 @@ static func of_object(body: RigidBody2D) -> PackedStringArray:
 				% body.global_scale
 			)
 		)
-	var world := HapticWorld2D.find_for(body)
-	if world != null and not body.freeze and absf(body.gravity_scale) > 0.0:
-		var falls := (
-			ProjectSettings.get_setting("physics/2d/default_gravity", 980.0) as float
-			* body.gravity_scale
-		)
-		if world.gravity_source == HapticWorld2D.GravitySource.NONE and absf(falls) > 0.0:
-			problems.append(
-				(
-					(
-						"It falls with %.0f px/s² in Godot, but %s has no gravity."
-						+ " Set gravity_scale to 0, or the world's gravity_source to PROJECT."
-					)
-					% [falls, world.name]
-				)
-			)
 	return problems
 
 

@@ -110,9 +110,9 @@ func is_current_run() -> bool:
 func tick(seconds: float) -> void:
 	_native.refresh()
 	var impulses := _native.take_impulses()
-	var mask := 0
+	var masks := PackedInt64Array()
 	for link: HapticLink2D in _links:
-		mask |= link.collision_mask
+		masks.append(link.collision_mask)
 	var distance := func(extent: float, speed: float) -> float:
 		return _reach.distance(extent, speed, _TOP_SPEED, seconds)
 	_neighborhood.leave_out(_parts if _is_alone else _parts + _met_by_others())
@@ -124,7 +124,7 @@ func tick(seconds: float) -> void:
 	_neighborhood.publish(
 		_world.get_world_2d(),
 		LinkageReader.reach(_linkage, _states, _units, distance),
-		mask,
+		masks,
 		seconds,
 		scale,
 		PackedFloat64Array([pull[0] * scale * scale, pull[1] * scale * scale])

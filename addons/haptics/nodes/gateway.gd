@@ -160,13 +160,15 @@ func is_running() -> bool:
 	return server().world_is_running(_world)
 
 
-## Publishes what lies within the discs (x, y, radius each): six numbers a body (pose and velocity).
+## Publishes what lies within the discs (x, y, radius each): eight numbers a body (pose, velocity,
+## free fall). `masks` are the layers that the tool touches, of a linkage those of each link.
 func submit(
 	bodies: PackedInt64Array,
 	states: PackedFloat64Array,
 	tick_seconds: float,
 	gravity: PackedFloat64Array,
-	discs: PackedFloat64Array
+	discs: PackedFloat64Array,
+	masks: PackedInt64Array
 ) -> PackedStringArray:
 	return server().world_submit(
 		_world,
@@ -175,6 +177,7 @@ func submit(
 		tick_seconds,
 		gravity,
 		discs,
+		masks,
 		Engine.get_process_frames(),
 		Engine.max_physics_steps_per_frame
 	)

@@ -69,7 +69,7 @@ enum CollisionMethod {
 	PAPER,
 }
 
-## Where gravity comes from.
+## Where the gravity of tools and linkages comes from.
 enum GravitySource {
 	## None: a planar device lies flat.
 	NONE,
@@ -162,7 +162,7 @@ var coupling_rotation_damping: float = 0.0
 @export var passivity_control: bool = false
 
 @export_group("Gravity")
-## Where the gravity of the tool and of movable bodies around it comes from.
+## Where the gravity of tools and linkages comes from. Rigid bodies fall as Godot lets them.
 @export var gravity_source: GravitySource = GravitySource.NONE
 ## Gravity of [constant CUSTOM], in the axes of the screen (y down).
 @export_custom(PROPERTY_HINT_NONE, "suffix:m/s²") var gravity: Vector2 = Vector2.ZERO

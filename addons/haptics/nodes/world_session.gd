@@ -123,7 +123,7 @@ func tick(seconds: float) -> PackedStringArray:
 		neighborhood.publish(
 			_world.get_world_2d(),
 			_reach_of_tool(seconds / scale),
-			_mask(),
+			_masks(),
 			seconds,
 			scale,
 			_gravity(scale)
@@ -303,11 +303,13 @@ func _what_is_gone() -> String:
 	return "The tool is gone"
 
 
-func _mask() -> int:
-	var mask := tool.collision_mask
+func _masks() -> PackedInt64Array:
+	var masks := PackedInt64Array()
 	for link: HapticLink2D in _links:
-		mask |= link.collision_mask
-	return mask
+		masks.append(link.collision_mask)
+	if masks.is_empty():
+		masks.append(tool.collision_mask)
+	return masks
 
 
 # what the native side says about a body in the hand; of tools their checks say it

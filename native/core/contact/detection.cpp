@@ -138,7 +138,7 @@ void collide_pieces(const Search& search, const Actor& a, const PlacedConvex& pl
     // two that are infinitely hard meet at the hardest that a surface may be
     constexpr double k_hardest = 1e12;
     Surface& surface = draft.patch.surface;
-    surface = combine(a.body->surface, b.body->surface);
+    surface = surface_between(*a.body, *b.body);
     surface.stiffness = std::min(surface.stiffness, k_hardest);
     surface.damping = std::min(surface.damping, k_hardest);
     draft.patch.presence = std::min(a.body->presence, b.body->presence);
@@ -227,6 +227,8 @@ void collide_neighbors(const Search& search, const BodySet& neighbors, BodyCache
             const Body& other = neighbors.body[static_cast<std::size_t>(k)];
             if ((one.jointed && (other.jointed || !disc[k].movable)) || (other.jointed && !disc[i].movable))
                 continue;
+            if (!do_meet(one, other))
+                continue;
             const bool first = other.kind != BodyKind::movable || one.id < other.id;
             Actor a = actor(neighbors, cache, first ? i : k, first_index, false);
             become_first(search.memory, center, a);
@@ -275,7 +277,8 @@ void detect_patches(const BodySet& tool, BodyCache& tool_cache, const BodySet& n
         const Disc own = disc_of(search, tool.body[index], tool_cache.bounds.radius[index], true);
         Actor a;
         for (std::int32_t k = 0; k < neighbors.body_count; ++k) {
-            if (own.apart(disc[static_cast<std::size_t>(k)]))
+            if ((tool.body[index].mask & neighbors.body[static_cast<std::size_t>(k)].layer) == 0 ||
+                own.apart(disc[static_cast<std::size_t>(k)]))
                 continue;
             if (a.body == nullptr) {
                 a = actor(tool, tool_cache, i, 0, true);

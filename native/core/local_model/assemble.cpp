@@ -154,14 +154,14 @@ void assemble_mass(const Model& model, Data& data, double dt) {
     s.external.setZero(n);
     s.mass.setZero(n, n);
     s.inverse_mass.setZero(n, n);
-    const auto set = [&](int row, double mass, double inertia) {
+    const auto set = [&](int row, const Body& b) {
         for (int k = 0; k < 3; ++k) {
-            const double m = k < 2 ? mass : inertia;
+            const double m = k < 2 ? b.mass : b.inertia;
             s.mass(row + k, row + k) = m;
             s.inverse_mass(row + k, row + k) = 1.0 / m;
         }
-        s.external(row) = mass * data.gravity.x();
-        s.external(row + 1) = mass * data.gravity.y();
+        s.external(row) = b.mass * (data.gravity.x() + b.acceleration.x());
+        s.external(row + 1) = b.mass * (data.gravity.y() + b.acceleration.y());
     };
     write_tool_mass(model, data, dt);
     for (int i = 0; i < data.movable_count; ++i) {
@@ -170,7 +170,7 @@ void assemble_mass(const Model& model, Data& data, double dt) {
             continue;
         const Body& b = data.neighbors.body[static_cast<std::size_t>(m.body)];
         if (!b.jointed) {
-            set(m.row, b.mass, b.inertia);
+            set(m.row, b);
             continue;
         }
         const Mat3 mass = b.mobility.inverse();

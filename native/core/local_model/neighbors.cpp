@@ -46,7 +46,7 @@ bool is_true_snapshot(const Neighborhood& n) {
         const bool massive =
             b.mass > 0.0 && b.mass < k_beyond_scene && b.inertia > 0.0 && b.inertia < k_beyond_scene;
         return is_in_scene(b.pose) && is_in_scene(b.velocity) && is_true_surface(b.surface) &&
-               (b.kind != BodyKind::movable || massive);
+               is_in_scene(b.acceleration) && (b.kind != BodyKind::movable || massive);
     };
     return std::isfinite(n.time) && n.tick > 0.0 && n.tick < k_beyond_scene && is_in_scene(n.gravity) &&
            std::all_of(n.bodies.body.begin(), n.bodies.body.begin() + n.bodies.body_count, body);
@@ -194,6 +194,8 @@ void take_neighborhood(const Neighborhood& n, Data& data) {
     data.snapshot_time = n.time;
     data.tick = n.tick;
     data.gravity = n.gravity;
+    for (std::int32_t i = 0; i < data.tool.body_count; ++i)
+        data.tool.body[static_cast<std::size_t>(i)].mask = ~n.tool_ignores[static_cast<std::size_t>(i)];
     data.plan = n.plan;
     take_movables(n, data);
     rename_patches(old_id, data);

@@ -82,9 +82,12 @@ Plan choose_plan(const Model& model, const Neighborhood& n) {
     need(Stage::collisions, (near || limits) && model.settings.contact_mode == ContactMode::penalty_impulse);
     need(Stage::restitution,
          plan.runs(Stage::collisions) && any_pair(model, n, [](const Surface& s) { return s.restitution; }));
-    need(Stage::friction, any_pair(model, n, [](const Surface& s) {
-             return std::max(s.static_friction, s.dynamic_friction);
-         }));
+    need(Stage::friction,
+         any_pair(model, n,
+                  [](const Surface& s) { return std::max(s.static_friction, s.dynamic_friction); }) ||
+             any_body(n, [](const Body& b) {
+                 return b.kind == BodyKind::movable && std::abs(b.scene_friction) > 0.0;
+             }));
     need(Stage::gravity, !n.gravity.isZero(0.0));
     need(Stage::linkage, articulated);
     need(Stage::coriolis, articulated && model.tool.linkage.coriolis);

@@ -11,7 +11,10 @@
 //     P = T + sum_j lambda_j r_j,  0 <= lambda_j <= f_j,  r_j the contact's row,
 // with the lambda that make P' M^-1 P least. So contacts take as much of the push as they bear, a free object
 // is told all of it, what goes from one object to the next is told to both with opposite signs, and the
-// energy of what is told is never above that of the push alone. Friction likewise between 0 and its impulse.
+// energy of what is told is never above that of the push alone. Friction that sticks likewise between 0 and
+// its impulse. Friction that slides, mu f, is there whether the tool pushes or not, so the scene takes it
+// itself; of it the push causes no more than mu lambda (an object pushed along a floor is told all of the
+// push, one that is pressed on a wall and drawn along it what the friction leaves).
 // A link of a linkage that the loop itself steps (free_linkage.hpp) is told all that its contacts give it.
 // Found coordinate by coordinate, starting from the best multiple of all f: that is the answer already where
 // nothing but the push is borne, and every sweep lowers the energy further.
@@ -29,12 +32,19 @@ constexpr int k_push_sweeps = 12;
 // one row for each point and one for the friction of each patch
 constexpr int k_most_answers = k_max_points + k_max_rows;
 
+// friction this near to its bound slides
+constexpr double k_sliding = 1.0 - 1e-6;
+
 struct Answer {
     bool tangent;
     int index;
     double most;
     double share;
     double mobility;
+    /// Of friction that slides: its coefficient, and how many of the answers before it are the normal ones of
+    /// its patch.
+    double friction;
+    int normals;
 };
 
 class Push {
@@ -69,13 +79,17 @@ class Push {
         const double size = all.dot(inverse(all));
         if (!(size > 0.0))
             return;
+        const FreedomVector alone = push_;
         const double part = std::clamp(-push_.dot(inverse(all)) / size, 0.0, 1.0);
         push_ += part * all;
         for (int k = 0; k < count_; ++k)
             answer_[static_cast<std::size_t>(k)].share = part * answer_[static_cast<std::size_t>(k)].most;
         for (int sweep = 0; sweep < k_push_sweeps; ++sweep)
             for (int k = 0; k < count_; ++k)
-                relax(answer_[static_cast<std::size_t>(k)]);
+                relax(k);
+        // the bounds of sliding friction move: no descent is sure
+        if (push_.dot(inverse(push_)) > alone.dot(inverse(alone)))
+            push_ = alone;
     }
 
     void tell_jointed() {
@@ -135,15 +149,22 @@ class Push {
     }
 
     void add_answers(int i, const PatchRow& t) {
+        const int first = count_;
+        double pressing = 0.0;
         for (int q = t.first_point; q < t.first_point + t.point_count; ++q)
-            if (normal_[q] > 0.0)
-                add_answer(false, q, normal_[q]);
-        if (tangent_[i] != 0.0)
-            add_answer(true, i, tangent_[i]);
+            if (normal_[q] > 0.0) {
+                pressing += normal_[q];
+                add_answer({false, q, normal_[q], 0.0, 0.0, 0.0, 0});
+            }
+        if (tangent_[i] == 0.0)
+            return;
+        // in a collision the solver's bound tells
+        const bool slides = t.mode == FrictionMode::slip_forward || t.mode == FrictionMode::slip_backward ||
+                            std::abs(tangent_[i]) >= k_sliding * t.dynamic_friction * pressing;
+        add_answer({true, i, tangent_[i], 0.0, 0.0, slides ? t.dynamic_friction : -1.0, count_ - first});
     }
 
-    void add_answer(bool tangent, int index, double most) {
-        Answer a{tangent, index, most, 0.0, 0.0};
+    void add_answer(Answer a) {
         FreedomVector row = FreedomVector::Zero(s_.freedoms);
         add(a, 1.0, row);
         a.mobility = row.dot(inverse(row));
@@ -158,12 +179,24 @@ class Push {
             to += impulse * s_.normal_rows.row(a.index).transpose();
     }
 
-    void relax(Answer& a) {
+    // the most that friction answers, with its sign
+    [[nodiscard]] double most_of(int k) const {
+        const Answer& a = answer_[static_cast<std::size_t>(k)];
+        if (!a.tangent || a.friction < 0.0)
+            return a.most;
+        double pressing = 0.0;
+        for (int n = k - a.normals; n < k; ++n)
+            pressing += answer_[static_cast<std::size_t>(n)].share;
+        return std::copysign(std::min(std::abs(a.most), a.friction * pressing), a.most);
+    }
+
+    void relax(int k) {
+        Answer& a = answer_[static_cast<std::size_t>(k)];
+        const double most = most_of(k);
         const FreedomVector v = inverse(push_);
         const double rate =
             a.tangent ? s_.tangent_rows.row(a.index).dot(v) : s_.normal_rows.row(a.index).dot(v);
-        const double next =
-            std::clamp(a.share - rate / a.mobility, std::min(a.most, 0.0), std::max(a.most, 0.0));
+        const double next = std::clamp(a.share - rate / a.mobility, std::min(most, 0.0), std::max(most, 0.0));
         add(a, next - a.share, push_);
         a.share = next;
     }

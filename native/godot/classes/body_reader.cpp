@@ -183,6 +183,13 @@ void read_shape(const Dictionary& from, const std::string& place, ShapeContext& 
     r.finish();
 }
 
+// bits of layers, all without the key
+std::uint32_t read_bits(DictionaryReader& r, const char* key) {
+    constexpr double k_all = std::numeric_limits<std::uint32_t>::max();
+    const double bits = r.number(key, k_all);
+    return bits >= 0.0 && bits <= k_all ? static_cast<std::uint32_t>(bits) : 0U;
+}
+
 } // namespace
 
 BodySpec read_body(const Dictionary& from, const std::string& place, const Surface& fallback,
@@ -202,6 +209,9 @@ BodySpec read_body(const Dictionary& from, const std::string& place, const Surfa
                            "Put it on the body."))
             spec.center(i) = 0.0;
     spec.body.surface = read_surface(r.dictionary("surface"), place + "surface.", fallback, problems);
+    spec.body.layer = read_bits(r, "layer");
+    spec.body.mask = read_bits(r, "mask");
+    spec.body.scene_friction = r.number("scene_friction", spec.body.scene_friction);
     double rounding = r.number("rounding", 0.0);
     if (!figures.range("rounding", rounding, 0.0, 10.0, "m", "0 leaves the corners sharp."))
         rounding = 0.0;

@@ -63,6 +63,8 @@ std::vector<std::size_t> BodyRegistry::build(std::span<const std::int64_t> ids,
         Candidate c{spec->body, spec->pieces, spec->bounds};
         c.body.pose = node_to_center(Pose(s[0], s[1], s[2]), spec->center);
         c.body.velocity = c.body.kind == BodyKind::fixed ? Twist(Twist::Zero()) : Twist(s[3], s[4], s[5]);
+        if (c.body.kind == BodyKind::movable && !c.body.jointed)
+            c.body.acceleration << Vec2(s[6], s[7]) - out.gravity, 0.0;
         candidates.push_back(c);
     }
     left_out_ = select_near(candidates, discs, out.bodies);

@@ -163,8 +163,8 @@ bool HapticServer::world_is_running(int64_t world) const {
 PackedStringArray HapticServer::world_submit(int64_t world, const PackedInt64Array& bodies,
                                              const PackedFloat64Array& states, double tick,
                                              const PackedFloat64Array& gravity,
-                                             const PackedFloat64Array& discs, int64_t frame,
-                                             int64_t most_ticks) {
+                                             const PackedFloat64Array& discs, const PackedInt64Array& masks,
+                                             int64_t frame, int64_t most_ticks) {
     Problems problems;
     HapticWorld* w = find(world);
     if (w == nullptr)
@@ -173,7 +173,7 @@ PackedStringArray HapticServer::world_submit(int64_t world, const PackedInt64Arr
     if (static_cast<std::size_t>(states.size()) != wanted || gravity.size() != 2 || discs.size() % 3 != 0) {
         problems.add("world_submit() got " + std::to_string(states.size()) + " state numbers for " +
                      std::to_string(bodies.size()) +
-                     " bodies (6 each: x, y, angle, vx, vy, angular velocity), " +
+                     " bodies (8 each: x, y, angle, vx, vy, angular velocity, free fall x, y), " +
                      std::to_string(gravity.size()) + " for gravity (2) and " + std::to_string(discs.size()) +
                      " for discs (3 each: x, y, radius).");
         return problems.to_godot();
@@ -181,8 +181,8 @@ PackedStringArray HapticServer::world_submit(int64_t world, const PackedInt64Arr
     std::vector<ReachDisc> near;
     for (int64_t i = 0; i < discs.size(); i += 3)
         near.push_back({Vec2(discs[i], discs[i + 1]), discs[i + 2]});
-    w->submit(bodies.span(), states.span(), near, {tick, frame, most_ticks}, Vec2(gravity[0], gravity[1]),
-              problems);
+    w->submit(bodies.span(), states.span(), near, masks.span(), {tick, frame, most_ticks},
+              Vec2(gravity[0], gravity[1]), problems);
     return problems.to_godot();
 }
 
@@ -439,7 +439,7 @@ void HapticServer::_bind_methods() {
     ClassDB::bind_method(D_METHOD("world_get_last_force", "world"), &HapticServer::world_get_last_force);
     ClassDB::bind_method(D_METHOD("world_is_running", "world"), &HapticServer::world_is_running);
     ClassDB::bind_method(D_METHOD("world_submit", "world", "bodies", "states", "tick", "gravity", "discs",
-                                  "frame", "most_ticks"),
+                                  "masks", "frame", "most_ticks"),
                          &HapticServer::world_submit);
     ClassDB::bind_method(D_METHOD("world_get_neighborhood", "world"), &HapticServer::world_get_neighborhood);
     ClassDB::bind_method(D_METHOD("world_get_left_out", "world"), &HapticServer::world_get_left_out);

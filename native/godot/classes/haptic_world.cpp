@@ -19,7 +19,9 @@ std::string state_text(std::span<const double> s) {
         return "(" + std::to_string(s[i]) + ", " + std::to_string(s[i + 1]) + ", " +
                std::to_string(s[i + 2]) + ")";
     };
-    return "its pose is " + three(0) + " m, m, rad and its velocity " + three(3) + " m/s, m/s, rad/s";
+    return "its pose is " + three(0) + " m, m, rad, its velocity " + three(3) +
+           " m/s, m/s, rad/s and its free fall (" + std::to_string(s[6]) + ", " + std::to_string(s[7]) +
+           ") m/s^2";
 }
 
 // why no force comes although nothing is wrong; empty when it comes, or a fault says it
@@ -124,8 +126,8 @@ void HapticWorld::remove_body(std::int64_t id) {
 }
 
 void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const double> states,
-                         std::span<const ReachDisc> discs, const Tick& when, const Vec2& gravity,
-                         Problems& problems) {
+                         std::span<const ReachDisc> discs, std::span<const std::int64_t> masks,
+                         const Tick& when, const Vec2& gravity, Problems& problems) {
     if (!running())
         return;
     const double tick = when.length;
@@ -141,6 +143,10 @@ void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const doub
         return;
     }
     Neighborhood& n = runner_->neighborhood();
+    n.gravity = gravity;
+    n.tool_ignores.fill(0);
+    for (std::size_t i = 0; i < std::min(masks.size(), n.tool_ignores.size()); ++i)
+        n.tool_ignores[i] = ~static_cast<std::uint32_t>(masks[i]);
     for (const std::size_t i : bodies_.build(ids, states, discs, n))
         if (!complained_[ids[i]]) {
             complained_[ids[i]] = true;
@@ -154,7 +160,6 @@ void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const doub
     const auto most = static_cast<int>(std::clamp<std::int64_t>(when.most, 1, 1000));
     n.time = realtime_ ? ticks_.tick(now(), tick, when.frame, most) : now();
     n.tick = tick;
-    n.gravity = gravity;
     n.echo_step = echo_step_;
     n.echo = echo_;
     n.echo_count = echo_count_;

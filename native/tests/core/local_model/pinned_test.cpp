@@ -199,3 +199,48 @@ TEST_CASE(
                         }
                     }
 }
+
+// 0.5 kg on a floor with friction 0.5, so 2.45 N: what slides is told all of the push, for the scene's own
+// solver has that friction too; what the friction holds is told nothing.
+TEST_CASE("friction that slides is the scene's own, friction that holds answers the push") {
+    Surface rough = shared::paper_surface();
+    rough.static_friction = rough.dynamic_friction = 0.5;
+    auto n = std::make_unique<Neighborhood>();
+    n->sequence = 1;
+    n->gravity = Vec2(0.0, -9.81);
+    Body& object = n->bodies.body[static_cast<std::size_t>(
+        shared::add_body(n->bodies, k_first, BodyKind::movable, rough, Pose(0.0302, -0.0150001, 0.0)))];
+    object.mass = 0.5;
+    object.inertia = 1e3; // it does not tilt
+    shared::add_piece(n->bodies, make_box(Vec2::Zero(), Vec2(0.02, 0.04)));
+    shared::add_body(n->bodies, 50, BodyKind::fixed, rough, Pose::Zero());
+    shared::add_piece(n->bodies, make_box(Vec2(0.0, -0.06), Vec2(4.0, 0.05)));
+    for (const double push : {1.0, 4.0}) {
+        Model model = shared::box_tool(k_tool_mass);
+        model.tool.shape.body[0].surface.static_friction = 0.0;
+        model.tool.shape.body[0].surface.dynamic_friction = 0.0;
+        auto data = std::make_unique<Data>();
+        reset(model, *data, Pose(0.0, -0.015, 0.0));
+        take_neighborhood(*n, *data);
+        HandInput hand;
+        hand.held = true;
+        hand.force = Wrench(push, k_tool_mass * 9.81, 0.0);
+        StepOutput out;
+        double pushed = 0.0;
+        Wrench before = Wrench::Zero();
+        for (int i = 0; i < 600; ++i) {
+            step(model, *data, hand, 0.001, out);
+            if (i == 400)
+                before = data->movable[0].belief.given;
+            if (i > 400)
+                pushed -= 0.001 * out.contact.x() + out.collision_impulse.x();
+        }
+        CAPTURE(push);
+        const double told = data->movable[0].belief.given.x() - before.x();
+        CHECK(pushed > 0.05);
+        if (push < 2.0)
+            CHECK(std::abs(told) < 5e-3 * pushed);
+        else
+            CHECK(told == doctest::Approx(pushed).epsilon(1e-3));
+    }
+}

@@ -7,7 +7,9 @@
 #include <haptics/core/types.hpp>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace haptics {
 
@@ -39,15 +41,41 @@ struct Body {
     std::int32_t link{0};
     /// Velocity (m/s, m/s, rad/s) of the center of mass for a unit impulse on it; positive definite.
     Mat3 mobility{Mat3::Zero()};
-    /// Acceleration that the tool's contacts add to, m/s^2, m/s^2, rad/s^2.
+    /// Acceleration that the tool's contacts add to, m/s^2, m/s^2, rad/s^2. Of a movable body that is not
+    /// jointed: beyond the neighborhood's gravity, for one that falls otherwise.
     Twist acceleration{0.0, 0.0, 0.0};
     Surface surface;
+    /// Layers that it is on, and those that it meets.
+    std::uint32_t layer{~0U};
+    std::uint32_t mask{~0U};
+    /// Friction that the scene's own solver has on this body; negative where it bears on smoother bodies too.
+    /// Not a number: the scene does not solve its contacts, and the surface counts everywhere.
+    double scene_friction{std::numeric_limits<double>::quiet_NaN()};
     /// How much of the body is there, 0 to 1: what appears or leaves under the tool fades. 1 in a snapshot.
     double presence{1.0};
     /// Range of this body's pieces in the piece array.
     std::int32_t first_piece{0};
     std::int32_t piece_count{0};
 };
+
+/// Surface of a contact of two bodies. What two neighbors do to each other the scene decides: its friction
+/// counts there, so that what is foreseen is what it will do.
+inline Surface surface_between(const Body& a, const Body& b) {
+    Surface s = combine(a.surface, b.surface);
+    const double friction = std::min(a.scene_friction, b.scene_friction);
+    if (a.kind != BodyKind::tool && !std::isnan(a.scene_friction) && !std::isnan(b.scene_friction))
+        s.static_friction = s.dynamic_friction = std::abs(friction);
+    return s;
+}
+
+/// Whether two neighbors meet: one that moves by its mass meets what its mask selects, a jointed one decides
+/// for the two.
+inline bool do_meet(const Body& a, const Body& b) {
+    if (a.jointed || b.jointed)
+        return ((a.jointed ? a.mask : b.mask) & (a.jointed ? b.layer : a.layer)) != 0;
+    return (a.kind == BodyKind::movable && (a.mask & b.layer) != 0) ||
+           (b.kind == BodyKind::movable && (b.mask & a.layer) != 0);
+}
 
 /// One convex piece with an id that stays the same while the scene keeps the shape.
 struct Piece {

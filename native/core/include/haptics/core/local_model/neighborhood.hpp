@@ -3,6 +3,7 @@
 /// that the scene writes at its physics tick and the haptic loop reads.
 
 #include <haptics/core/contact/body.hpp>
+#include <haptics/core/dynamics/linkage_spec.hpp>
 #include <haptics/core/local_model/movable.hpp>
 #include <haptics/core/local_model/plan.hpp>
 
@@ -26,6 +27,8 @@ struct Neighborhood {
     std::array<MovableBelief, k_max_movables> echo;
     /// Acceleration of free fall in scene axes, m/s^2.
     Vec2 gravity{0.0, 0.0};
+    /// Layers that each link of the tool does not touch; of a rigid tool the first counts.
+    std::array<std::uint32_t, k_max_links> tool_ignores{};
     /// Stages that the step needs with these bodies (choose_plan); leaves out nothing unless chosen.
     Plan plan;
     /// Bodies that did not fit (a reported fault).

@@ -48,7 +48,7 @@ class BodyRegistry {
 
     /// Numbers per body in `states` of build(): node pose (x, y, theta), then velocity of the center of mass
     /// (x, y) and angular velocity.
-    static constexpr std::size_t k_state = 6;
+    static constexpr std::size_t k_state = 8;
 
     /// Fills the bodies of a snapshot from ids and states with what lies within the discs (all of it without
     /// discs); what does not fit is counted in `overflow`. Returns the places in `ids` of bodies that are

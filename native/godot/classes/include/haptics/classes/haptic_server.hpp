@@ -85,7 +85,8 @@ class HapticServer : public godot::Object {
     godot::PackedStringArray world_submit(int64_t world, const godot::PackedInt64Array& bodies,
                                           const godot::PackedFloat64Array& states, double tick,
                                           const godot::PackedFloat64Array& gravity,
-                                          const godot::PackedFloat64Array& discs, int64_t frame,
+                                          const godot::PackedFloat64Array& discs,
+                                          const godot::PackedInt64Array& masks, int64_t frame,
                                           int64_t most_ticks);
     godot::Array world_get_neighborhood(int64_t world) const;
     int64_t world_get_left_out(int64_t world) const;

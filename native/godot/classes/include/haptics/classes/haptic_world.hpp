@@ -43,7 +43,8 @@ class HapticWorld {
     /// Publishes a snapshot of what lies within the discs; ids that could not be used are named in `problems`
     /// (once each), and so is a snapshot that is full.
     void submit(std::span<const std::int64_t> ids, std::span<const double> states,
-                std::span<const ReachDisc> discs, const Tick& when, const Vec2& gravity, Problems& problems);
+                std::span<const ReachDisc> discs, std::span<const std::int64_t> masks, const Tick& when,
+                const Vec2& gravity, Problems& problems);
     /// The pieces of the last snapshot, for a picture: body, kind, one_way, half_plane, radius, points (scene
     /// axes, m).
     [[nodiscard]] godot::Array neighborhood() const;
