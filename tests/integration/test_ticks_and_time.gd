@@ -41,9 +41,7 @@ func _wait_until(world: HapticWorld2D, time: float) -> void:
 
 # the mean force (N) once it is steady and the worst jump between two steps, over what may be
 func _push(ticks: int, wall: Node2D) -> Vector2:
-	Engine.physics_ticks_per_second = ticks * _HURRY
-	Engine.max_physics_steps_per_frame = 64
-	Engine.time_scale = _HURRY
+	_set_ticks(ticks)
 	# the ticks that are left of this frame still have the length that was set before
 	await wait_process_frames(2)
 	var world := Scene.make_world()
@@ -92,6 +90,30 @@ func test_a_push_on_a_wall_is_the_same_at_every_rate_of_ticks() -> void:
 
 func test_a_wall_in_motion_does_not_jump_at_any_rate_of_ticks() -> void:
 	await _push_at_every_rate(_make_mover)
+
+
+func test_ticks_that_change_their_length_are_not_felt(
+	rates: Array = use_parameters([[60, 240], [20, 240], [240, 20], [120, 30]])
+) -> void:
+	_set_ticks(rates[0] as int)
+	await wait_process_frames(2)
+	var world := Scene.make_world()
+	world.record_seconds = 4.0
+	(world.device as HapticSimulatedPantograph).hand = _lean()
+	_add_scene(world, _make_mover())
+	await _wait_until(world, 1.6)
+	_set_ticks(rates[1] as int)
+	await _wait_until(world, 2.5)
+	var rows: Rows = Rows.of(world)
+	assert_between(rows.mean_force(1.45, 2.45), 2.0, 4.0)
+	assert_lt(rows.worst_jump(1.45, 2.45).x, 0.4)
+	assert_eq(world.get_faults(), PackedStringArray())
+
+
+func _set_ticks(ticks: int) -> void:
+	Engine.physics_ticks_per_second = ticks * _HURRY
+	Engine.max_physics_steps_per_frame = 64
+	Engine.time_scale = _HURRY
 
 
 func test_the_scale_of_time_scales_what_moves_and_not_the_hand() -> void:

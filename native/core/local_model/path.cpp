@@ -20,7 +20,8 @@
 // with c = 1 (c = 0 when they are true), which shows in the distance travelled, with a of half a step ago:
 //     (x_0 - x_1) / dt - (v_0 + v_1) / 2 + d2 dt^2 / 6 = c a tick / 2;
 // c is the least-squares fit of that over the last k_late_memory seconds or so, within 0..1, and the
-// derivatives above hold c tick / 2 before the snapshot.
+// derivatives above hold c tick / 2 before the snapshot: where ticks change their length T, told velocities
+// are not as far apart as their snapshots, but dt - c (T_0 - T_1) / 2.
 //
 // Joining. A new snapshot seldom puts a body where it is shown. The difference e at the time of taking, with
 // its first two derivatives, is taken away over one tick, T, by the polynomial of degree 5 in u that starts
@@ -52,20 +53,24 @@ constexpr double k_apart = 0.2;
 
 void remember(const Track& before, Track& track) {
     track.past_count = std::min(before.past_count + 1, k_past_velocities);
-    track.past[0] = {before.time, before.told};
+    track.past[0] = {before.time, before.tick, before.told};
     std::copy_n(before.past.begin(), track.past_count - 1, track.past.begin() + 1);
 }
 
-// Divided differences of the last told velocities that are at least `apart` s from each other; what takes
-// more of them than there are is 0.
+// Divided differences of the last told velocities that are at least `apart` s from each other, each of them
+// `late` half ticks late; what takes more of them than there are is 0.
 class Differences {
   public:
-    Differences(const Track& t, double apart) {
-        add({t.time, t.told});
+    Differences(const Track& t, double apart, double late) {
+        add(t.time - 0.5 * late * t.tick, t.told);
+        double newer = t.time;
         for (std::int32_t i = 0; i < t.past_count && count_ < k_nodes; ++i) {
             const PastVelocity& p = t.past[static_cast<std::size_t>(i)];
-            if (time_[static_cast<std::size_t>(count_ - 1)] - p.time >= apart)
-                add(p);
+            const double time = p.time - 0.5 * late * p.tick;
+            if (time_[static_cast<std::size_t>(count_ - 1)] - time < std::max(apart, 0.25 * (newer - p.time)))
+                continue;
+            add(time, p.told);
+            newer = p.time;
         }
     }
     [[nodiscard]] int count() const { return count_; }
@@ -79,10 +84,10 @@ class Differences {
   private:
     static constexpr int k_nodes = 5;
 
-    void add(const PastVelocity& p) {
+    void add(double time, const Twist& told) {
         const auto n = static_cast<std::size_t>(count_++);
-        time_[n] = p.time;
-        table_[0][n] = p.told;
+        time_[n] = time;
+        table_[0][n] = told;
         for (std::size_t k = 1; k <= n; ++k)
             table_[k][n - k] = (table_[k - 1][n - k] - table_[k - 1][n - k + 1]) / (time_[n - k] - time_[n]);
     }
@@ -104,6 +109,12 @@ double agreement(double change, double size) {
     return size > 0.0 ? std::clamp(2.0 - 3.0 * change / size, 0.0, 1.0) : 0.0;
 }
 
+// how late the told velocities were so far, in half ticks
+double lateness(const Track& t) {
+    const std::size_t part = t.late_weight[0] > 0.0 ? 0 : 1;
+    return t.late_weight[part] > 0.0 ? std::clamp(t.late_sum[part] / t.late_weight[part], 0.0, 1.0) : 0.0;
+}
+
 } // namespace
 
 void estimate(const Track& before, Track& track) {
@@ -111,14 +122,15 @@ void estimate(const Track& before, Track& track) {
     if (dt <= 0.0 || dt > k_memory)
         return;
     remember(before, track);
-    const Differences fine(track, 0.0);
-    const Differences coarse(track, k_apart * track.reach);
+    const double late_so_far = lateness(before);
+    const Differences fine(track, 0.0, late_so_far);
+    const Differences coarse(track, k_apart * track.reach, late_so_far);
     const double keep = std::max(0.0, 1.0 - dt / k_late_memory);
     const double fade = 1.0 - dt / k_memory;
     // the trapezoid's rule misses a jerk
     const Vec3 drift =
         (track.pose - before.pose) / dt - 0.5 * (track.told + before.told) + dt * dt / 6.0 * fine.of(2, 0);
-    const Vec3 half = 0.5 * track.tick * fine.of(1, 0);
+    const Vec3 lag = 0.25 * (track.tick + before.tick) * fine.of(1, 0);
     // translation and turning are judged apart
     for (const std::size_t part : {0U, 1U}) {
         const Vec3 axes = part == 0 ? Vec3(1.0, 1.0, 0.0) : Vec3(0.0, 0.0, 1.0);
@@ -134,8 +146,8 @@ void estimate(const Track& before, Track& track) {
         if (fine.count() < 3)
             continue;
         // how late are the told velocities?
-        track.late_sum[part] += dt * drift.dot(half.cwiseProduct(axes));
-        track.late_weight[part] += dt * half.dot(half.cwiseProduct(axes));
+        track.late_sum[part] += dt * drift.dot(lag.cwiseProduct(axes));
+        track.late_weight[part] += dt * lag.dot(lag.cwiseProduct(axes));
         if (track.late_weight[part] <= 0.0)
             continue;
         const double late =

@@ -158,7 +158,13 @@ void HapticWorld::submit(std::span<const std::int64_t> ids, std::span<const doub
         }
     n.sequence = ++sequence_;
     const auto most = static_cast<int>(std::clamp<std::int64_t>(when.most, 1, 1000));
-    n.time = realtime_ ? ticks_.tick(now(), tick, when.frame, most) : now();
+    // in lock-step a tick is told before its own time is run: alike for all, and when ticks change their
+    // length the difference goes away slowly
+    constexpr double k_forget = 2.0;
+    tick_lead_ += last_tick_ > 0.0 ? tick - last_tick_ : 0.0;
+    tick_lead_ *= std::max(1.0 - tick / k_forget, 0.0);
+    last_tick_ = tick;
+    n.time = realtime_ ? ticks_.tick(now(), tick, when.frame, most) : now() + tick_lead_;
     n.tick = tick;
     n.echo_step = echo_step_;
     n.echo = echo_;
@@ -255,6 +261,7 @@ void HapticWorld::begin(bool realtime, double record_seconds, Problems& problems
     said_full_ = false;
     said_movables_ = false;
     given_report_ = HapticReport{};
+    last_tick_ = tick_lead_ = 0.0;
     scheduling_ = "lock-step";
     scheduling_details_ = "Lock-step: the haptic steps run on the main thread, at each physics tick.";
 }

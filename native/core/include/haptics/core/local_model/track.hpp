@@ -8,9 +8,10 @@
 
 namespace haptics {
 
-/// Velocity that an earlier snapshot told, and its time, s.
+/// Velocity that an earlier snapshot told, its time and the length of its tick, s.
 struct PastVelocity {
     double time;
+    double tick;
     Twist told;
 };
 inline constexpr std::int32_t k_past_velocities = 8;

@@ -117,6 +117,10 @@ class HapticWorld {
     std::vector<HapticWorld*> guests_;
     HostSteal steal_;
     TickClock ticks_;
+    /// Lock-step: length of the last tick (0: none yet), and how far the times of ticks lead the loop's
+    /// because they changed their length, s.
+    double last_tick_{0.0};
+    double tick_lead_{0.0};
     bool realtime_{false};
     CouplingGains gains_;
     HapticReport report_;
