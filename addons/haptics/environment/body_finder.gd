@@ -14,6 +14,10 @@ const TileLayer := preload("tile_layer.gd")
 # the engine cuts lists of results silently: ask again with more room when one comes back full
 const _FIRST_RESULTS := 64
 const _MOST_RESULTS := 4096
+# a body that the engine no longer finds, though nothing says why, is kept for so many ticks
+const _GRACE := 2
+# earlier numbers of a body that are remembered, while what it was then fades
+const _MOST_NUMBERS := 32
 
 var _units: HapticUnits
 # takes a number back on the native side
@@ -33,6 +37,7 @@ var _problems := PackedStringArray()
 # what was answered last, and the readers of that
 var _last_keys := PackedInt64Array()
 var _last: Array[BodyReader] = []
+var _misses_some := false
 
 
 func _init(units: HapticUnits, remove: Callable) -> void:
@@ -60,16 +65,48 @@ func find(
 		for result: Dictionary in results:
 			keys.append(result["collider_id"])
 	# mostly the same as at the tick before; tiles come and go within their layer
-	if keys != _last_keys or not _layers.is_empty():
+	if keys != _last_keys or _misses_some or not _layers.is_empty():
 		_last_keys = keys
-		_last = _sort_out(answers, discs, growth, mask)
+		var found := _sort_out(answers, discs, growth, mask)
+		_keep_missing(found, space, mask | more)
+		_last.clear()
+		for id: int in _sorted(found):
+			_last.append(found[id])
 	return _last
+
+
+# The engine finds a body whose shapes were set anew only after its next step.
+func _keep_missing(
+	found: Dictionary[int, BodyReader], space: PhysicsDirectSpaceState2D, mask: int
+) -> void:
+	_misses_some = false
+	for id: int in found:
+		found[id].missed = 0
+	for reader: BodyReader in _last:
+		if found.has(reader.id) or not reader.is_present():
+			continue
+		var body := reader.node as CollisionObject2D
+		if body == null or body.collision_layer & mask == 0 or reader.is_switched_off():
+			continue
+		if body.get_world_2d().direct_space_state != space:
+			continue
+		reader.look()
+		reader.missed = 0 if reader.is_dirty else reader.missed + 1
+		if reader.missed <= _GRACE:
+			_misses_some = true
+			found[reader.id] = reader
+
+
+func _sorted(found: Dictionary[int, BodyReader]) -> Array[int]:
+	var ids := found.keys()
+	ids.sort()
+	return ids
 
 
 # the readers of what was answered, by their numbers
 func _sort_out(
 	answers: Array[Array], discs: Array[Vector3], growth: float, mask: int
-) -> Array[BodyReader]:
+) -> Dictionary[int, BodyReader]:
 	var found: Dictionary[int, BodyReader] = {}
 	for index: int in discs.size():
 		var disc := Vector3(discs[index].x, discs[index].y, discs[index].z + growth)
@@ -84,12 +121,20 @@ func _sort_out(
 				found[reader.id] = reader
 			else:
 				_meet(result["collider"], disc, mask, found)
-	var ids := found.keys()
-	ids.sort()
-	var readers: Array[BodyReader] = []
-	for id: int in ids:
-		readers.append(found[id])
-	return readers
+	return found
+
+
+## Gives a body a new number: what it was leaves, what it is appears. Both fade where they are touched.
+func renumber(reader: BodyReader) -> void:
+	_remove.call(reader.id)
+	reader.numbers.append(reader.id)
+	if reader.numbers.size() > _MOST_NUMBERS:
+		_numbers.erase(reader.numbers[1])
+		reader.numbers.remove_at(1)
+	reader.id = _next_number
+	_next_number += 1
+	_numbers[reader.id] = reader
+	_last_keys.clear()
 
 
 ## Never finds these.
@@ -132,7 +177,9 @@ func take_problems() -> PackedStringArray:
 ## Forgets everything.
 func clear() -> void:
 	for number: int in _numbers.keys():
-		_drop(_numbers[number])
+		# one body may have several
+		if _numbers.has(number):
+			_drop(_numbers[number])
 	_readers.clear()
 	_layers.clear()
 	_leaving.clear()
@@ -218,6 +265,8 @@ func _drop(reader: BodyReader) -> void:
 	_last_keys.clear()
 	_last = []
 	_numbers.erase(reader.id)
+	for number: int in reader.numbers:
+		_numbers.erase(number)
 	if is_instance_valid(reader.node) and reader.node.tree_exiting.is_connected(_on_leaving):
 		if not reader is TileBody:
 			reader.node.tree_exiting.disconnect(_on_leaving)

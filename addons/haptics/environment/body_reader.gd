@@ -11,6 +11,8 @@ const TELEPORT_SPEED := 5.0
 ## Slower than this stands still, m/s and rad/s.
 const REST_SPEED := 1e-7
 
+# a shape whose corners moved farther at once is another one, m: 3 N on the paper's wall
+const _EXCHANGED := 0.0002
 # a scale that is off by less is noise of single precision, and no reason to read the shapes again
 const _SCALE_STEP := Vector2(1e-5, 1e-5)
 
@@ -18,6 +20,10 @@ const _SCALE_STEP := Vector2(1e-5, 1e-5)
 var node: Node2D
 ## Its number on the native side, above 0.
 var id: int
+## Its earlier numbers, the first one first.
+var numbers: Array[int] = []
+## For so many ticks the engine has not found it.
+var missed := 0
 ## Content of the last description that was handed over.
 var signature := 0
 ## False while the native side refuses the description.
@@ -31,6 +37,7 @@ var problems: PackedStringArray = []
 var extent := 0.0
 
 var _units: HapticUnits
+var _told_shapes: Array[Dictionary] = []
 # x, y, angle, vx, vy, angular velocity, free fall x, y
 var _state: PackedFloat64Array = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
 var _tick := -1
@@ -69,6 +76,29 @@ func describe(fallback: HapticSurface) -> Dictionary:
 	if is_finite(_friction()):
 		description["scene_friction"] = _friction()
 	return description
+
+
+## The number under which the scene knows it, also after it was numbered anew.
+func first_number() -> int:
+	return id if numbers.is_empty() else numbers[0]
+
+
+## Whether `shapes` are others than those that were told last, and not the same ones a little
+## larger, or moved by a little. They are told from now on.
+func exchanges_shapes(shapes: Array[Dictionary]) -> bool:
+	var before := _told_shapes
+	_told_shapes = shapes
+	if before.size() != shapes.size():
+		return not before.is_empty()
+	for i: int in shapes.size():
+		var was: PackedFloat64Array = before[i]["points"]
+		var now: PackedFloat64Array = shapes[i]["points"]
+		if before[i]["id"] != shapes[i]["id"] or was.size() != now.size():
+			return true
+		for k: int in now.size():
+			if absf(now[k] - was[k]) > _EXCHANGED:
+				return true
+	return false
 
 
 ## True while all of its shapes are switched off: then nothing is there to touch, and nothing wrong.

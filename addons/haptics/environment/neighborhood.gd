@@ -124,6 +124,32 @@ func body_of(number: int) -> Node2D:
 	return reader.node if reader != null and is_instance_valid(reader.node) else null
 
 
+## These events under the first number of each body, but those of a body that is still touched under
+## another number. `touched` are first numbers.
+func of_bodies(events: Array, touched: PackedInt64Array) -> Array:
+	var told: Array = []
+	for event: Dictionary in events:
+		var number: int = event["body"]
+		var reader := _finder.reader_of(number)
+		if reader != null:
+			event["body"] = reader.first_number()
+			if event["kind"] == "ended" and number != reader.id and event["body"] in touched:
+				continue
+		told.append(event)
+	return told
+
+
+## The first numbers of these bodies, each once.
+func first_numbers(numbers: PackedInt64Array) -> PackedInt64Array:
+	var first := PackedInt64Array()
+	for number: int in numbers:
+		var reader := _finder.reader_of(number)
+		var known := reader.first_number() if reader != null else number
+		if not known in first:
+			first.append(known)
+	return first
+
+
 ## The surface of what has that number; null when it is gone.
 func surface_of(number: int) -> HapticSurface:
 	var reader := _finder.reader_of(number)
@@ -185,6 +211,9 @@ func _describe(reader: BodyReader, problems: PackedStringArray) -> void:
 	if signature == reader.signature:
 		return
 	reader.signature = signature
+	var shapes: Array[Dictionary] = description["shapes"]
+	if reader.exchanges_shapes(shapes) and description["kind"] != "movable":
+		_finder.renumber(reader)
 	if reader.is_switched_off():
 		reader.is_usable = false
 		return

@@ -159,7 +159,13 @@ func show() -> void:
 			)
 		if tool is HeldBody:
 			(tool as HeldBody).carry()
-		_touches.emit(native.take_events(), native.get_touched(), units, neighborhood.body_of)
+		var touched := neighborhood.first_numbers(native.get_touched())
+		_touches.emit(
+			neighborhood.of_bodies(native.take_events(), touched),
+			touched,
+			units,
+			neighborhood.body_of
+		)
 	_emit_faults()
 
 
