@@ -14,8 +14,7 @@ using Bytes = EmulatedDevice::Bytes;
 using Packets = std::vector<Bytes>;
 
 // a change of one report on its way, once
-void once(EmulatedDevice& device,
-          std::function<std::vector<Bytes>(const Bytes&)> change) {
+void once(EmulatedDevice& device, std::function<std::vector<Bytes>(const Bytes&)> change) {
     device.set_way([change, done = false](const Bytes& report) mutable {
         if (done)
             return Packets{report};

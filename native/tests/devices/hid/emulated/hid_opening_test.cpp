@@ -1,5 +1,5 @@
-// How a device is found and opened, how it goes and comes back, and what is said where it cannot be had, on the
-// real hidapi.
+// How a device is found and opened, how it goes and comes back, and what is said where it cannot be had, on
+// the real hidapi.
 #include <doctest/doctest.h>
 
 #include <cmath>
