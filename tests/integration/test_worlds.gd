@@ -21,9 +21,20 @@ func _push(world: HapticWorld2D, place: Transform2D) -> Node2D:
 
 
 func test_a_scene_without_a_haptic_world_runs_as_ever() -> void:
-	add_child_autofree(Scene.gather([Scene.make_wall(Vector2.ZERO, Vector2(40, 40))]))
-	await wait_physics_frames(2)
-	pass_test("no error came")
+	var wall := Scene.make_wall(Vector2.ZERO, Vector2(400, 40))
+	# falls 20 px onto it
+	var object := Scene.make_object(Vector2(0, -60), Vector2(40, 40), 0.1)
+	object.linear_velocity = Vector2(0, 100)
+	var tool := Scene.make_tool(Vector2(0, -200))
+	add_child_autofree(Scene.gather([wall, object, tool]))
+	await wait_physics_frames(30)
+	assert_almost_eq(object.position, Vector2(0, -40), Vector2(0.5, 0.5))
+	assert_eq(tool.position, Vector2(0, -200))
+	assert_null(tool.get_haptic_world())
+	assert_eq(tool.get_contacts().size(), 0)
+	assert_false(tool.is_touching(wall))
+	assert_push_error("There is no HapticWorld2D in this scene")
+	assert_push_error_count(1)
 
 
 func test_two_viewports_hold_a_world_each() -> void:

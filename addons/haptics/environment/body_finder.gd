@@ -152,6 +152,11 @@ func reader_of(number: int) -> BodyReader:
 	return _numbers.get(number)
 
 
+## All that are known, each once or more often.
+func readers() -> Array[BodyReader]:
+	return _numbers.values()
+
+
 ## Takes the numbers of bodies back that left the scene for good.
 func forget_gone() -> void:
 	for key: int in _leaving:

@@ -15,7 +15,7 @@ const _TICKS_TO_DESCRIBE := 240
 # of our own nodes
 const _TELL := &"tell_problems"
 
-## Surface of bodies that have none.
+## Surface of bodies that have none; see set_default_surface().
 var default_surface: HapticSurface
 ## Bodies in the last snapshot.
 var near_count := 0
@@ -97,6 +97,15 @@ func publish(
 		problems.append(_named(text))
 	left_out = _native.get_left_out()
 	return problems
+
+
+## The surface of bodies that have none, from the next snapshot on.
+func set_default_surface(surface: HapticSurface) -> void:
+	if surface == default_surface:
+		return
+	default_surface = surface
+	for reader: BodyReader in _finder.readers():
+		reader.is_dirty = true
 
 
 ## Gives bodies what the tool pushed them with: id, x, y, angular each.

@@ -40,7 +40,6 @@ func _init(linkage: HapticLinkage2D, world: HapticWorld2D) -> void:
 	_world = world
 	_units = HapticUnits.new(world.pixels_per_meter, world.global_transform)
 	_neighborhood = Neighborhood.new(_native, _units)
-	_neighborhood.default_surface = world.default_surface
 
 
 ## False when it cannot move; its checks say why.
@@ -115,6 +114,7 @@ func tick(seconds: float) -> void:
 		masks.append(link.collision_mask)
 	var distance := func(extent: float, speed: float) -> float:
 		return _reach.distance(extent, speed, _TOP_SPEED, seconds)
+	_neighborhood.set_default_surface(_world.default_surface)
 	_neighborhood.leave_out(_parts if _is_alone else _parts + _met_by_others())
 	# the loop runs in real time: velocities of the scene go with its time scale, accelerations twice
 	var scale := 1.0

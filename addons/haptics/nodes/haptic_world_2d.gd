@@ -7,7 +7,9 @@ extends Node2D
 ##
 ## One per World2D. Add it with a [HapticTool2D] anywhere in the scene; bodies that the tool's
 ## collision_mask selects can be felt. Its origin is the origin of the device's workspace; its scale
-## has to stay 1. All signals come on the main thread.
+## has to stay 1. All signals come on the main thread. Mapping, gravity, [member default_surface] and
+## what the tool's collision_mask selects count at once when they change while the world runs; all
+## else of world, device and tool counts from the next start, and a warning says so.
 
 ## The loop runs.
 signal started
@@ -438,10 +440,7 @@ func get_neighborhood() -> Array[Dictionary]:
 
 ## Where the loop was given a look at the scene: discs on the canvas (x, y, radius, px).
 func get_reach() -> Array[Vector3]:
-	var discs: Array[Vector3] = []
-	if is_running():
-		discs = _session.neighborhood.discs
-	return discs
+	return _session.neighborhood.discs if is_running() else ([] as Array[Vector3])
 
 
 ## Draws the neighborhood, or stops it.

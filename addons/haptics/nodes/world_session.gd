@@ -11,6 +11,7 @@ const WorldSettings := preload("world_settings.gd")
 const PlaceChecks := preload("place_checks.gd")
 const ToolReader := preload("../environment/tool_reader.gd")
 const HeldBody := preload("held_body.gd")
+const StartFigures := preload("start_figures.gd")
 const LinkageReader := preload("../environment/linkage_reader.gd")
 
 # below this scale of time a scene counts as paused
@@ -43,6 +44,7 @@ var _top_speed := 0.0
 var _was_full := false
 var _placement := {}
 var _faults: PackedStringArray = []
+var _figures: StartFigures
 
 
 func _init(world: HapticWorld2D) -> void:
@@ -50,7 +52,7 @@ func _init(world: HapticWorld2D) -> void:
 	_is_lockstep = world.mode == HapticWorld2D.Mode.LOCKSTEP
 	units = HapticUnits.new(world.pixels_per_meter, world.global_transform)
 	neighborhood = Neighborhood.new(native, units)
-	neighborhood.default_surface = world.default_surface
+	neighborhood.set_default_surface(world.default_surface)
 
 
 ## Sets everything up and starts the loop. Returns what is wrong.
@@ -75,6 +77,7 @@ func start() -> PackedStringArray:
 	native.refresh()
 	state = native.get_state()
 	_touches = TouchSignals.new(tool)
+	_figures = StartFigures.new(_world, tool, _links)
 	neighborhood.leave_out(get_parts())
 	neighborhood.push_links()
 	if tool is HeldBody:
@@ -118,6 +121,9 @@ func tick(seconds: float) -> PackedStringArray:
 	state = native.get_state()
 	var impulses := native.take_impulses()
 	problems.append_array(PlaceChecks.of(_world))
+	for text: String in _figures.changed():
+		push_warning("%s: %s" % [_world.get_path(), text])
+	neighborhood.set_default_surface(_world.default_surface)
 	units.set_frame(_world.global_transform)
 	problems.append_array(
 		neighborhood.publish(
