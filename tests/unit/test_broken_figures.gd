@@ -7,6 +7,7 @@ const Linkages := preload("res://tests/support/linkages.gd")
 const Checks := preload("res://addons/haptics/nodes/checks.gd")
 const Gateway := preload("res://addons/haptics/nodes/gateway.gd")
 const LinkageReader := preload("res://addons/haptics/environment/linkage_reader.gd")
+const DrawingChecks := preload("res://addons/haptics/nodes/drawing_checks.gd")
 const LinkageChecks := preload("res://addons/haptics/nodes/linkage_checks.gd")
 
 # cut to the project's ceiling, or told at the start and at the tick
@@ -133,6 +134,29 @@ func test_of_a_link() -> void:
 	_break_all(_link, _of_links, "", ["upper_limit", "grip", "mass"])
 	_link.density = 0.0
 	_break_all(_link, _of_links, "", ["upper_limit", "grip", "density"])
+
+
+func test_of_what_draws() -> void:
+	var arrows := HapticForceArrows2D.new()
+	_wall.get_parent().add_child(arrows)
+	_break_all(arrows, DrawingChecks.of_arrows.bind(arrows))
+	var skin := HapticShapeSkin2D.new()
+	_wall.add_child(skin)
+	_break_all(skin, DrawingChecks.of_skin.bind(skin))
+	# said when it would be drawn, once, and in a place where there is nothing to draw
+	skin.edge_width = NAN
+	await wait_process_frames(3)
+	skin.pointer = 1.0
+	await wait_process_frames(3)
+	assert_push_error("edge_width is nan px")
+	skin.edge_width = 1.0
+	skin.reparent(_world)
+	assert_string_contains("".join(DrawingChecks.of_skin(skin)), "and World has none")
+	var cursor := HapticHandCursor2D.new()
+	_wall.add_child(cursor)
+	await wait_process_frames(2)
+	assert_push_error("is not a child of a HapticWorld2D")
+	assert_push_error_count(2)
 
 
 func test_of_the_motion_with_which_a_linkage_starts() -> void:

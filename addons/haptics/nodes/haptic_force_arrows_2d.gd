@@ -5,6 +5,9 @@ extends Node2D
 ## Draws the forces of a haptic world as arrows: at every contact what pushes the tool, and at the
 ## grip what the hand feels.
 
+const Warnings := preload("warnings.gd")
+const DrawingChecks := preload("drawing_checks.gd")
+
 ## The world to draw; without one the world of this node's World2D.
 @export var world: HapticWorld2D
 ## Length of an arrow, px/N.
@@ -20,11 +23,17 @@ extends Node2D
 ## Color of what the hand feels.
 @export var hand_color: Color = Color(0.42, 0.86, 0.72)
 
+var _warnings := Warnings.new(self, DrawingChecks.of_arrows.bind(self))
+
 
 func _init() -> void:
 	top_level = true
 	z_index = 90
 	physics_interpolation_mode = Node.PHYSICS_INTERPOLATION_MODE_OFF
+
+
+func _notification(what: int) -> void:
+	_warnings.follow(what)
 
 
 func _process(_delta: float) -> void:
@@ -36,9 +45,16 @@ func _process(_delta: float) -> void:
 func _draw() -> void:
 	if world == null or Engine.is_editor_hint() or not world.is_running():
 		return
+	if not DrawingChecks.figures_of_arrows(self).is_empty():
+		_warnings.say()
+		return
 	for contact: HapticContact in world.get_contacts():
 		_draw_arrow(contact.position, contact.force, contact_color)
 	_draw_arrow(world.get_grip().origin, world.get_force(), hand_color)
+
+
+func _get_configuration_warnings() -> PackedStringArray:
+	return _warnings.shown()
 
 
 func _draw_arrow(from: Vector2, force: Vector2, color: Color) -> void:

@@ -12,6 +12,9 @@ extends Node2D
 ## What to tell a player in one line.
 const HELP := "Move onto the tool to take it  ·  wheel or Q E turn it  ·  right button leaves it"
 
+const Warnings := preload("warnings.gd")
+const DrawingChecks := preload("drawing_checks.gd")
+
 # how near the cursor has to come, px on the screen
 const _NEAR := 26.0
 # how fast the hand comes to the cursor when it was taken from afar, m/s
@@ -24,6 +27,7 @@ const _MOST_TURN := deg_to_rad(55.0)
 const _CHANGE := 0.25
 const _COLOR := Color(0.553, 0.647, 0.953)
 
+var _warnings := Warnings.new(self, DrawingChecks.of_cursor.bind(self))
 var _is_engaged := false
 # how long the hand rests where it is once it was told to take another part, s
 var _rest := 0.0
@@ -42,18 +46,20 @@ func _init() -> void:
 
 func _ready() -> void:
 	if _world() == null:
-		push_error(
-			(
-				"%s is not a child of a HapticWorld2D and shows nothing. Remove it: the world makes its own."
-				% get_path()
-			)
-		)
 		set_process(false)
 		set_process_unhandled_input(false)
 		hide()
 		return
 	_first_angle = _world().get_grip().get_rotation()
 	_angle = _first_angle
+
+
+func _notification(what: int) -> void:
+	_warnings.follow(what)
+
+
+func _get_configuration_warnings() -> PackedStringArray:
+	return _warnings.shown()
 
 
 ## True while the hand follows the cursor.

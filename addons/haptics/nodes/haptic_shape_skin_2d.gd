@@ -6,6 +6,12 @@ extends Node2D
 ##
 ## Replace it with sprites when the scene gets its own.
 
+const Warnings := preload("warnings.gd")
+const DrawingChecks := preload("drawing_checks.gd")
+
+# of a half-plane's edge, px
+const _HALF_LENGTH := 4000.0
+
 ## Color inside.
 @export var fill: Color = Color(0.553, 0.647, 0.953, 0.45):
 	set(value):
@@ -27,6 +33,12 @@ extends Node2D
 		pointer = value
 		queue_redraw()
 
+var _warnings := Warnings.new(self, DrawingChecks.of_skin.bind(self))
+
+
+func _notification(what: int) -> void:
+	_warnings.follow(what)
+
 
 func _process(_delta: float) -> void:
 	# shapes are edited
@@ -37,11 +49,15 @@ func _process(_delta: float) -> void:
 
 
 func _draw() -> void:
+	if not DrawingChecks.figures_of_skin(self).is_empty():
+		_warnings.say()
+		return
 	for child: Node in get_parent().get_children():
 		var shape := child as CollisionShape2D
 		var polygon := child as CollisionPolygon2D
 		if shape != null and shape.shape != null and not shape.disabled:
 			_paint(_outline(shape.shape), shape.transform)
+			_paint_lines(_lines(shape.shape), shape.transform)
 		elif polygon != null and not polygon.disabled:
 			_paint(polygon.polygon, polygon.transform)
 	if pointer > 0.0:
@@ -53,12 +69,44 @@ func _paint(outline: PackedVector2Array, place: Transform2D) -> void:
 	if outline.size() < 3:
 		return
 	var corners := place * outline
+	if Geometry2D.triangulate_polygon(corners).is_empty():
+		# it crosses itself: its edges alone
+		for i: int in outline.size():
+			_paint_lines([outline[i], outline[(i + 1) % outline.size()]], place)
+		return
 	draw_colored_polygon(corners, fill)
 	if edge.a > 0.0 and edge_width > 0.0:
 		var rim := Geometry2D.offset_polygon(corners, -edge_width / 2.0)
 		for ring: PackedVector2Array in rim:
 			ring.append(ring[0])
 			draw_polyline(ring, edge, edge_width, true)
+
+
+# pairs of ends
+func _paint_lines(ends: PackedVector2Array, place: Transform2D) -> void:
+	if ends.size() < 2 or edge.a <= 0.0 or edge_width <= 0.0:
+		return
+	var placed := place * ends
+	for i: int in range(0, placed.size() - 1, 2):
+		draw_line(placed[i], placed[i + 1], edge, edge_width, true)
+
+
+func _get_configuration_warnings() -> PackedStringArray:
+	return _warnings.shown()
+
+
+# what has no inside, as pairs of ends
+static func _lines(shape: Shape2D) -> PackedVector2Array:
+	if shape is SegmentShape2D:
+		return [(shape as SegmentShape2D).a, (shape as SegmentShape2D).b]
+	if shape is ConcavePolygonShape2D:
+		return (shape as ConcavePolygonShape2D).segments
+	if shape is WorldBoundaryShape2D:
+		var boundary := shape as WorldBoundaryShape2D
+		var middle := boundary.normal * boundary.distance
+		var along := boundary.normal.orthogonal().normalized() * _HALF_LENGTH
+		return [middle - along, middle + along]
+	return []
 
 
 static func _outline(shape: Shape2D) -> PackedVector2Array:

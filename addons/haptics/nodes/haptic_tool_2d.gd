@@ -28,6 +28,7 @@ enum Grip {
 
 const Warnings := preload("warnings.gd")
 const Checks := preload("checks.gd")
+const Sketch := preload("tool_sketch.gd")
 
 ## Mass of the tool, kg, above 0.
 @export_range(0.001, 2.0, 0.001, "or_greater", "suffix:kg") var mass: float = 0.1
@@ -47,6 +48,7 @@ const Checks := preload("checks.gd")
 @export_custom(PROPERTY_HINT_NONE, "suffix:px") var grip_point: Vector2 = Vector2.ZERO
 
 var _warnings := Warnings.new(self, Checks.of_tool.bind(self))
+var _sketch := Sketch.new(self)
 
 
 func _init() -> void:
@@ -58,6 +60,7 @@ func _notification(what: int) -> void:
 	if what == NOTIFICATION_ENTER_TREE:
 		add_to_group(HapticWorld2D.TOOLS)
 	_warnings.follow(what)
+	_sketch.follow(what)
 
 
 ## The world it belongs to; null without one.

@@ -19,6 +19,8 @@ signal stopped
 signal fault_raised(fault: String)
 ## Another tool, or another link of a linkage, is held; either may be null.
 signal tool_changed(from: HapticTool2D, to: HapticTool2D)
+## A button of the device went down or up. Comes in the physics tick: [method take_at] may follow.
+signal button_changed(button: int, pressed: bool)
 ## More lies within reach of the tool than the loop can hold: of that, `left_out` convex pieces
 ## cannot be felt, the farthest. Said when it begins; an error says it too, once.
 signal neighborhood_overflowed(left_out: int)
@@ -88,6 +90,7 @@ const Session := preload("world_session.gd")
 const WorldSettings := preload("world_settings.gd")
 const Tools := preload("tools.gd")
 const Reports := preload("world_reports.gd")
+const DeviceButtons := preload("device_buttons.gd")
 const StopKey := preload("stop_key.gd")
 const NeighborhoodView := preload("neighborhood_view.gd")
 
@@ -184,6 +187,7 @@ var clutched: bool = false
 
 var _unattended := DisplayServer.get_name() == "headless"
 var _warnings := Warnings.new(self, Checks.of_world.bind(self))
+var _buttons := DeviceButtons.new(self)
 var _session: Session
 var _wants_start := false
 var _chosen: HapticTool2D
@@ -214,6 +218,7 @@ func _physics_process(delta: float) -> void:
 		start()
 	if is_running():
 		_warnings.say_these(_session.tick(delta))
+		_buttons.follow()
 
 
 func _process(_delta: float) -> void:
@@ -360,6 +365,11 @@ func is_held() -> bool:
 	return is_running() and _session.state[Gateway.State.HELD] > 0.0
 
 
+## True while that button of the device is down.
+func is_button_pressed(button: int) -> bool:
+	return _buttons.is_pressed(button)
+
+
 ## Force on the hand, N, canvas's axes, in the scene; the device gives mapping_scale times that.
 func get_force() -> Vector2:
 	return _vector(Gateway.State.FORCE_X)
@@ -397,9 +407,7 @@ func get_handle() -> Transform2D:
 
 ## What touches now.
 func get_contacts() -> Array[HapticContact]:
-	if not is_running():
-		return []
-	return _session.get_contacts()
+	return _session.get_contacts() if is_running() else ([] as Array[HapticContact])
 
 
 ## Latched faults, cause and remedy each.
@@ -432,10 +440,7 @@ func get_neighbor_count() -> int:
 ## ("fixed", "kinematic" or "movable"), one_way, half_plane, radius (px) and points (canvas; of a
 ## half-plane a point and one along its normal). For pictures, not for every frame of a game.
 func get_neighborhood() -> Array[Dictionary]:
-	var pieces: Array[Dictionary] = []
-	if is_running():
-		pieces = _session.get_neighborhood()
-	return pieces
+	return _session.get_neighborhood() if is_running() else ([] as Array[Dictionary])
 
 
 ## Where the loop was given a look at the scene: discs on the canvas (x, y, radius, px).
@@ -483,16 +488,11 @@ func _value(index: Gateway.State) -> float:
 
 
 func _vector(first: Gateway.State) -> Vector2:
-	if not is_running():
-		return Vector2.ZERO
-	return _session.units.vector_to_canvas(_session.state[first], _session.state[first + 1])
+	return _session.vector(first) if is_running() else Vector2.ZERO
 
 
 func _pose(first: Gateway.State) -> Transform2D:
-	if not is_running():
-		return global_transform
-	var state := _session.state
-	return _session.units.pose_to_canvas(state[first], state[first + 1], state[first + 2])
+	return _session.pose(first) if is_running() else global_transform
 
 
 func _get_configuration_warnings() -> PackedStringArray:

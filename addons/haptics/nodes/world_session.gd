@@ -190,6 +190,16 @@ func get_contacts() -> Array[HapticContact]:
 	return contacts
 
 
+## Two numbers of the newest report as a vector on the canvas, same unit.
+func vector(first: Gateway.State) -> Vector2:
+	return units.vector_to_canvas(state[first], state[first + 1])
+
+
+## Three numbers of it as a pose on the canvas.
+func pose(first: Gateway.State) -> Transform2D:
+	return units.pose_to_canvas(state[first], state[first + 1], state[first + 2])
+
+
 ## The convex pieces of the last snapshot, on the canvas.
 func get_neighborhood() -> Array[Dictionary]:
 	var pieces: Array[Dictionary] = []
