@@ -1,6 +1,6 @@
 extends GutTest
-## Settings that are changed while the world runs: some count at once, of the others it is said, once
-## each, that they count from the next start.
+## Settings that are changed while the world runs: some count at once, of the others it is said,
+## once each, that they count from the next start.
 
 const Scene := preload("res://tests/support/haptic_scene.gd")
 const Linkages := preload("res://tests/support/linkages.gd")

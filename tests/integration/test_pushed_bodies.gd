@@ -1,6 +1,6 @@
 extends GutTest
-## What the tool pushes is Godot's: it rubs on what Godot lets it rub on, falls as it falls there, and
-## meets what its own mask selects.
+## What the tool pushes is Godot's: it rubs on what Godot lets it rub on, falls as it falls there,
+## and meets what its own mask selects.
 
 const Scene := preload("res://tests/support/haptic_scene.gd")
 const Rows := preload("res://tests/support/run_rows.gd")

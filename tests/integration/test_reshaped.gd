@@ -1,6 +1,6 @@
 extends GutTest
-## What a touched body is made of changes, piece by piece: what stays is not felt, what goes or comes
-## fades.
+## What a touched body is made of changes, piece by piece: what stays is not felt, what goes or
+## comes fades.
 
 const Scene := preload("res://tests/support/haptic_scene.gd")
 const Rows := preload("res://tests/support/run_rows.gd")

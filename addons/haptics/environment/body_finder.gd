@@ -48,9 +48,9 @@ func _init(units: HapticUnits, remove: Callable) -> void:
 	_query.collide_with_areas = true
 
 
-## The bodies within the discs (canvas: x, y, radius in px), each grown by `growth` px, that `mask` or
-## `more` selects, in the order in which they were met first: the same in every run. Of tiles those
-## that `mask` selects.
+## The bodies within the discs (canvas: x, y, radius in px), each grown by `growth` px, that `mask`
+## or `more` selects, in the order in which they were met first: the same in every run. Of tiles
+## those that `mask` selects.
 func find(
 	space: PhysicsDirectSpaceState2D, discs: Array[Vector3], growth: float, mask: int, more: int
 ) -> Array[BodyReader]:
@@ -124,7 +124,8 @@ func _sort_out(
 	return found
 
 
-## Gives a body a new number: what it was leaves, what it is appears. Both fade where they are touched.
+## Gives a body a new number: what it was leaves, what it is appears. Both fade where they are
+## touched.
 func renumber(reader: BodyReader) -> void:
 	_remove.call(reader.id)
 	reader.numbers.append(reader.id)

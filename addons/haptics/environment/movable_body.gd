@@ -4,7 +4,7 @@ extends "body_reader.gd"
 
 # stands for a body that cannot turn, kg m²
 const _NO_TURNING := 1.0e3
-# the engine gives concave outlines no inertia but what it rounds: a radius of gyration below this, px
+# concave outlines get no inertia but what the engine rounds: a radius of gyration below this, px
 const _LEAST_RADIUS := 1.0e-3
 
 

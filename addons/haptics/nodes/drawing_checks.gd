@@ -35,7 +35,7 @@ static func of_skin(skin: HapticShapeSkin2D) -> PackedStringArray:
 			problems
 			. append(
 				(
-					"It paints the collision shapes of its parent, and %s has none. Make it a child of a body or tool."
+					"It paints the shapes of its parent, and %s has none. Make it a child of a body or tool."
 					% skin.get_parent().name
 				)
 			)

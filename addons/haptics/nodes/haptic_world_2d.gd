@@ -7,9 +7,9 @@ extends Node2D
 ##
 ## One per World2D. Add it with a [HapticTool2D] anywhere in the scene; bodies that the tool's
 ## collision_mask selects can be felt. Its origin is the origin of the device's workspace; its scale
-## has to stay 1. All signals come on the main thread. Mapping, gravity, [member default_surface] and
-## what the tool's collision_mask selects count at once when they change while the world runs; all
-## else of world, device and tool counts from the next start, and a warning says so.
+## has to stay 1. All signals come on the main thread. Mapping, gravity, [member default_surface]
+## and what the tool's collision_mask selects count at once when they change while the world runs;
+## all else of world, device and tool counts from the next start, and a warning says so.
 
 ## The loop runs.
 signal started
