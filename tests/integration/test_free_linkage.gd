@@ -271,8 +271,9 @@ func test_it_follows_its_node_and_its_figures() -> void:
 
 # Two equal pendulums side by side that touch when both hang; `first` is lifted by 0.6 rad and
 # swings against `second`. Returns how far each gets after the hit, and how much the energy grew.
-func _cradle(restitution: float, swapped: bool) -> Dictionary:
+func _cradle(restitution: float, swapped: bool, world_runs: bool = true) -> Dictionary:
 	_with_gravity()
+	_world.auto_start = world_runs
 	var surface := HapticSurface.new()
 	surface.restitution = restitution
 	surface.static_friction = 0.0
@@ -305,8 +306,9 @@ func _cradle(restitution: float, swapped: bool) -> Dictionary:
 
 
 # equal masses without loss: the one that came stays, the other goes on as far
-func _check_cradle(swapped: bool) -> void:
-	var cradle := await _cradle(1.0, swapped)
+func _check_cradle(swapped: bool, world_runs: bool = true) -> void:
+	var cradle := await _cradle(1.0, swapped, world_runs)
+	assert_eq(_world.is_running(), world_runs)
 	assert_almost_eq(cradle["second"] as float, 0.6, 0.03)
 	assert_almost_eq(cradle["first"] as float, 0.0, 0.06)
 	assert_lt(cradle["gain"] as float, 2e-4)
@@ -318,6 +320,18 @@ func test_two_pendulums_hand_a_swing_over() -> void:
 
 func test_two_pendulums_hand_a_swing_over_whichever_started_first() -> void:
 	await _check_cradle(true)
+
+
+func test_two_pendulums_hand_a_swing_over_while_no_world_runs() -> void:
+	await _check_cradle(false, false)
+	# the world starts: both go on beside its tool
+	assert_true(_world.start())
+	await wait_physics_frames(3)
+	for linkage: Node in get_tree().get_nodes_in_group(&"haptic_linkages"):
+		assert_true((linkage as HapticLinkage2D).get_mover().is_beside_tool())
+	_world.stop()
+	await wait_physics_frames(3)
+	assert_not_null(_linkage.get_mover())
 
 
 func test_two_pendulums_go_on_together_where_nothing_bounces() -> void:

@@ -3,13 +3,15 @@ extends RefCounted
 ## A linkage that nobody holds: the same native dynamics and contacts as when it is held.
 ##
 ## While the world runs, its loop steps the linkage too, and the tool and the links of all such
-## linkages meet at every haptic step. Else the physics tick runs the steps, and other linkages are
-## bodies that move and do not yield. Walls and objects it meets as a tool does.
+## linkages meet at every haptic step; else a loop in the physics tick does, without a tool. What
+## finds no place in either runs alone: other linkages are bodies that move and do not yield. Walls
+## and objects it meets as a tool does.
 
 const Gateway := preload("gateway.gd")
 const Neighborhood := preload("../environment/neighborhood.gd")
 const LinkageReader := preload("../environment/linkage_reader.gd")
 const WorldSettings := preload("world_settings.gd")
+const StandInHost := preload("stand_in_host.gd")
 const Reach := preload("../environment/reach.gd")
 
 # a link may get so fast until the next tick, m/s
@@ -29,6 +31,7 @@ var _reach := Reach.new()
 var _parts: Array[RID] = []
 var _states: PackedFloat64Array = []
 var _host: Gateway
+var _stand_in: StandInHost
 var _is_alone := false
 var _at := Transform2D.IDENTITY
 var _signature := 0
@@ -68,6 +71,8 @@ func start() -> bool:
 	)
 	if not wrong.is_empty():
 		return false
+	if _world.get_run() == null:
+		_stand_in = StandInHost.of(_world)
 	_host = _host_now()
 	if _host == null or not _native.start_beside(_host).is_empty():
 		_is_alone = true
@@ -97,7 +102,9 @@ func is_current() -> bool:
 
 func _host_now() -> Gateway:
 	var run := _world.get_run()
-	return run.native if run != null else null
+	if run != null:
+		return run.native
+	return _stand_in.native if _stand_in != null else null
 
 
 ## True while it can be shown.
@@ -118,7 +125,7 @@ func tick(seconds: float) -> void:
 	_neighborhood.leave_out(_parts if _is_alone else _parts + _met_by_others())
 	# the loop runs in real time: velocities of the scene go with its time scale, accelerations twice
 	var scale := 1.0
-	if not _is_alone and _world.mode == HapticWorld2D.Mode.REALTIME:
+	if not _is_alone and _stand_in == null and _world.mode == HapticWorld2D.Mode.REALTIME:
 		scale = maxf(Engine.time_scale, _LEAST_TIME_SCALE)
 	var pull := WorldSettings.pull_of(_world)
 	_neighborhood.publish(
@@ -138,7 +145,10 @@ func tick(seconds: float) -> void:
 # The loop solves a contact of two once: the tool's run that with all linkages, and of two linkages
 # that with the smaller number.
 func _met_by_others() -> Array[RID]:
-	var parts := _world.get_run().get_parts()
+	var run := _world.get_run()
+	var parts: Array[RID] = []
+	if run != null:
+		parts = run.get_parts()
 	for linkage: HapticLinkage2D in _world.get_tree().get_nodes_in_group(LinkageReader.LINKAGES):
 		var other := linkage.get_mover()
 		if other != null and other.is_beside_tool() and other.comes_before(_native, _host):
