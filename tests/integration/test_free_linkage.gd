@@ -341,3 +341,13 @@ func test_two_pendulums_go_on_together_where_nothing_bounces() -> void:
 	assert_almost_eq(cradle["first"] as float, angle, 0.03)
 	assert_almost_eq(cradle["second"] as float, angle, 0.03)
 	assert_lt(cradle["gain"] as float, 2e-4)
+
+
+func test_one_that_ran_away_is_told_once() -> void:
+	_world.gravity_source = HapticWorld2D.GravitySource.CUSTOM
+	_world.gravity = Vector2(0.0, 3.0e8)
+	_linkage = Linkages.make_chain(2, Vector2(200, 20))
+	_linkage.grounded = false
+	await _run([], 12)
+	assert_push_error("ran away (beyond 1000 km or 1000 km/s")
+	assert_push_error_count(1)

@@ -20,6 +20,8 @@ const _TOP_SPEED := 2.0
 const _LEAST_TIME_SCALE := 0.1
 # changes that have no signal are looked for in so many ticks
 const _TICKS_TO_LOOK := 30
+# bit of the faults: the model ran away and was put back
+const _RAN_AWAY := 1 << 13
 
 var _native := Gateway.new()
 var _linkage: HapticLinkage2D
@@ -36,6 +38,8 @@ var _is_alone := false
 var _at := Transform2D.IDENTITY
 var _signature := 0
 var _ticks := 0
+var _fastest := 0.0
+var _said_ran_away := false
 
 
 func _init(linkage: HapticLinkage2D, world: HapticWorld2D) -> void:
@@ -115,6 +119,7 @@ func is_current_run() -> bool:
 ## One physics tick of so many seconds.
 func tick(seconds: float) -> void:
 	_native.refresh()
+	_say_when_it_ran_away()
 	var impulses := _native.take_impulses()
 	var masks := PackedInt64Array()
 	for link: HapticLink2D in _links:
@@ -140,6 +145,27 @@ func tick(seconds: float) -> void:
 	if _is_alone:
 		_native.advance(seconds)
 	show()
+
+
+# once; the loop has put it back, at rest
+func _say_when_it_ran_away() -> void:
+	for link: int in _links.size():
+		var at := link * LinkageReader.STATE
+		_fastest = maxf(_fastest, Vector2(_states[at + 3], _states[at + 4]).length())
+	var faults := int(_native.get_state()[Gateway.State.FAULTS])
+	if _said_ran_away or faults & _RAN_AWAY == 0:
+		return
+	_said_ran_away = true
+	push_error(
+		(
+			(
+				"%s ran away (beyond 1000 km or 1000 km/s, or no number; its links had been seen at"
+				+ " up to %.1f m/s) and was put back at rest. Make extreme figures milder: light"
+				+ " links, stiff springs and surfaces, strong gravity, shapes inside of each other."
+			)
+			% [_linkage.get_path(), _fastest]
+		)
+	)
 
 
 # The loop solves a contact of two once: the tool's run that with all linkages, and of two linkages

@@ -89,9 +89,12 @@ bool collide(const Model& model, Data& data, StepOutput& output) {
     int count = 0;
     bool hit = false;
     for (int i = 0; i < s.points && count < k_max_collision_contacts; ++i) {
-        const PointRow& p = s.point[static_cast<std::size_t>(i)];
-        if (p.gap > k_closed)
+        PointRow& p = s.point[static_cast<std::size_t>(i)];
+        if (p.gap > k_closed) {
+            // what has opened since its hit may be hit again before the step ends
+            p.was_apart = p.was_apart || s.row[static_cast<std::size_t>(p.patch)].collided;
             continue;
+        }
         chosen[static_cast<std::size_t>(count++)] = i;
         hit = hit || (may_collide(s, p) && rate(s, i) < 0.0);
     }

@@ -121,4 +121,17 @@ TEST_SUITE("a model that ran away") {
             held.session->step();
         CHECK(held.session->report().armed);
     }
+
+    TEST_CASE("a linkage that nobody holds says so too, for good") {
+        const Model model = shared::linkage_tool(shared::door());
+        SimulatedHandOptions hand;
+        shared::HeldTool free(model, one(0.0), hand);
+        free.session->step();
+        CHECK(free.session->report().faults == Fault::none);
+        free.session->set_rates(one(1e12));
+        for (int i = 0; i < 3; ++i)
+            free.session->step();
+        CHECK(has(free.session->report().faults, Fault::make_the_scene_milder));
+        CHECK(free.session->report().configuration_rate[0] == 0.0);
+    }
 }

@@ -116,4 +116,45 @@ TEST_SUITE("hits on a linkage") {
                               doctest::Approx(0.3 - impulse / mass).epsilon(0.01));
                     }
     }
+
+    TEST_CASE(
+        "a ball that meets the door again once the door is at its stop bounces off again, in the same step") {
+        for (const double above : {1e-5, 5e-5})
+            for (const double mass : {0.3, 5.0})
+                for (const double e : {0.4, 0.8})
+                    for (const Integrator integrator :
+                         {Integrator::semi_implicit, Integrator::linearly_implicit, Integrator::exact}) {
+                        constexpr double k_lever = 0.1;
+                        LinkageSpec spec = shared::door();
+                        spec.links[0].joint.lower_limit = -1.0;
+                        spec.links[0].joint.upper_limit = above / k_lever;
+                        Model model = shared::linkage_tool(spec);
+                        model.settings.integrator = integrator;
+                        auto data = std::make_unique<Data>();
+                        reset(model, *data, LinkageVector::Zero(1));
+                        Surface surface = shared::paper_surface();
+                        surface.restitution = e;
+                        auto n = shared::empty_world();
+                        shared::add_body(n->bodies, 9, BodyKind::movable, surface,
+                                         Pose(k_lever, -0.0151, 0.0));
+                        Body& ball = n->bodies.body[0];
+                        ball.velocity = Twist(0.0, 0.5, 0.0);
+                        ball.mass = mass;
+                        ball.inertia = 0.5 * mass * 1e-4;
+                        shared::add_piece(n->bodies, make_disc(Vec2::Zero(), 0.01));
+                        take_neighborhood(*n, *data);
+                        StepOutput out;
+                        step(model, *data, HandInput{}, 0.001, out);
+                        const double door = 4e-3 / (k_lever * k_lever);
+                        const double first = (mass - e * door) / (mass + door) * 0.5;
+                        CAPTURE(above);
+                        CAPTURE(mass);
+                        CAPTURE(e);
+                        CAPTURE(static_cast<int>(integrator));
+                        // what still moves on towards the door meets it at rest
+                        const double expected = first > 0.0 ? -e * first : first;
+                        CHECK(data->neighbors.body[0].velocity.y() ==
+                              doctest::Approx(expected).epsilon(0.02));
+                    }
+    }
 }
