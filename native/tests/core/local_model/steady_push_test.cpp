@@ -61,3 +61,36 @@ TEST_CASE("a steady 2 N push on the paper's wall gives 2 N and 133 um") {
                     CHECK(corner.depth == doctest::Approx(2.0 / 15000.0).epsilon(0.01));
                 }
 }
+
+TEST_CASE("a box that is held at a point comes to rest on its edge however hard it is pushed") {
+    for (const Integrator integrator :
+         {Integrator::semi_implicit, Integrator::linearly_implicit, Integrator::exact})
+        for (const double rate : {500.0, 1000.0})
+            for (const double force : {5.0, 20.0, 40.0})
+                for (const double tilt : {0.02, 0.05, 0.2}) {
+                    CAPTURE(static_cast<int>(integrator));
+                    CAPTURE(rate);
+                    CAPTURE(force);
+                    CAPTURE(tilt);
+                    Model model = shared::box_tool();
+                    model.settings.integrator = integrator;
+                    model.tool.grip = Grip{0, Vec2(0.0, 0.0), false};
+                    auto data = std::make_unique<Data>();
+                    reset(model, *data, Pose(0.0, 0.02 * std::sin(tilt) + 0.0105, tilt));
+                    take_neighborhood(*shared::floor_of(1), *data);
+                    HandInput hand;
+                    hand.held = true;
+                    hand.force = Wrench(0.0, -force, 0.0);
+                    hand.damping = Vec3(2.0, 2.0, 0.0);
+                    StepOutput out;
+                    double rocks = 0.0;
+                    for (int i = 0; i < static_cast<int>(rate); ++i) {
+                        step(model, *data, hand, 1.0 / rate, out);
+                        if (i > static_cast<int>(0.9 * rate))
+                            rocks = std::max(rocks, std::abs(data->pose.z()));
+                    }
+                    CHECK(rocks < 1e-3);
+                    CHECK(out.contact.y() == doctest::Approx(force).epsilon(0.01));
+                    CHECK(out.max_penetration == doctest::Approx(force / 15000.0).epsilon(0.02));
+                }
+}
