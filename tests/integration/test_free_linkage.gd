@@ -314,6 +314,38 @@ func _check_cradle(swapped: bool, world_runs: bool = true) -> void:
 	assert_lt(cradle["gain"] as float, 2e-4)
 
 
+# a door at its upper stop, its copy and one that was saved and loaded: the stops are where they were
+func test_a_copy_of_a_linkage_that_has_moved_keeps_its_joints() -> void:
+	_with_gravity()
+	_linkage = Linkages.make_chain(2, Vector2(200, 20))
+	var door := _linkage.get_links()[0]
+	door.has_limits = true
+	door.upper_limit = 0.4
+	door.limit_damping = 0.1
+	_linkage.get_links()[1].joint = HapticLink2D.Joint.FIXED
+	await _run([], 90)
+	assert_almost_eq(door.get_coordinate(), 0.4, 0.01)
+	var scene := PackedScene.new()
+	for node: Node in _linkage.find_children("*", "", true, false):
+		node.owner = _linkage
+	assert_eq(scene.pack(_linkage), OK)
+	var copies: Array[HapticLinkage2D] = [
+		_linkage.duplicate() as HapticLinkage2D, scene.instantiate() as HapticLinkage2D
+	]
+	# one that is put elsewhere begins there
+	var turned := _linkage.duplicate() as HapticLinkage2D
+	turned.get_links()[0].rotation -= 0.5
+	copies.append(turned)
+	for i: int in copies.size():
+		copies[i].position.x += 800.0 * (i + 1)
+		_linkage.get_parent().add_child(copies[i])
+	await wait_physics_frames(90)
+	for i: int in 2:
+		assert_almost_eq(copies[i].get_links()[0].get_coordinate(), 0.4, 0.01)
+		assert_almost_eq(copies[i].get_links()[0].rotation, door.rotation, 0.01)
+	assert_almost_eq(turned.get_links()[0].rotation, door.rotation - 0.1, 0.02)
+
+
 func test_two_pendulums_hand_a_swing_over() -> void:
 	await _check_cradle(false)
 

@@ -19,6 +19,8 @@ enum Joint {
 	FIXED,
 }
 
+const _STATE := &"joint_state"
+
 ## Mass per area of the shapes, kg/m²; above 0 it replaces [member mass].
 @export_range(0.0, 100.0, 0.1, "or_greater", "suffix:kg/m²") var density: float = 0.0
 ## The hand holds the angle too. Else it holds the point [member grip_point], and the link turns
@@ -53,6 +55,9 @@ enum Joint {
 ## Coordinate at which the spring rests, rad (clockwise) or m.
 @export_range(-6.3, 6.3, 0.0001, "or_less", "or_greater") var spring_rest: float = 0.0
 
+# of what it is a copy of, until its linkage asked for it
+var _copied: Array = []
+
 
 ## The linkage it belongs to; null when it is not below one.
 func get_linkage() -> HapticLinkage2D:
@@ -71,6 +76,32 @@ func get_parent_link() -> HapticLink2D:
 func get_coordinate() -> float:
 	var linkage := get_linkage()
 	return linkage.get_coordinate(self) if linkage != null else 0.0
+
+
+## Where what it is a copy of was drawn, its coordinate and rate; once, and empty for no copy.
+func take_copied_state() -> Array:
+	var state := _copied
+	_copied = []
+	return state
+
+
+# stored in copies and saved scenes of a running game, not in the editor's
+func _get_property_list() -> Array[Dictionary]:
+	if Engine.is_editor_hint():
+		return []
+	return [{"name": _STATE, "type": TYPE_ARRAY, "usage": PROPERTY_USAGE_STORAGE}]
+
+
+func _get(property: StringName) -> Variant:
+	if property != _STATE:
+		return null
+	return get_linkage().get_joint_state(self) if get_linkage() != null else []
+
+
+func _set(property: StringName, value: Variant) -> bool:
+	if property == _STATE and value is Array:
+		_copied = value
+	return property == _STATE
 
 
 ## Pushes an error for every problem of it and its linkage that was not told before.

@@ -16,6 +16,9 @@ const FreeLinkage := preload("free_linkage.gd")
 
 # after a start that failed, ticks until the next one
 const _PAUSE := 60
+# a copy that stands within this of where its coordinate says has not been put elsewhere, px and rad
+const _SAME_PLACE := 1.0
+const _SAME_ANGLE := 0.01
 
 ## Links directly below it are jointed to the scene. Else there is one of them and it is free in the
 ## plane.
@@ -168,7 +171,16 @@ func get_rest(link: HapticLink2D) -> Transform2D:
 		_rest[key] = link.transform
 		_coordinates.erase(key)
 		_rates.erase(key)
+		_go_on_as_copied(link)
 	return _rest[key]
+
+
+## Where `link` was drawn, its coordinate and rate: for a copy of it. Empty when it has not moved.
+func get_joint_state(link: HapticLink2D) -> Array:
+	var key := link.get_instance_id()
+	if not _coordinates.has(key) or _parents.get(key, 0) != link.get_parent().get_instance_id():
+		return []
+	return [_rest[key], _coordinates[key], _rates.get(key, 0.0)]
 
 
 ## Puts the links where the native side has them.
@@ -184,6 +196,28 @@ func place(states: PackedFloat64Array, units: HapticUnits) -> void:
 		_coordinates[key] = states[at + 6] * LinkageReader.sign_of(link)
 		_rates[key] = states[at + 7] * LinkageReader.sign_of(link)
 	_base_velocity = states.slice(3, 6)
+
+
+# A copy of a link that has moved stands at the same coordinate, unless it was put elsewhere.
+func _go_on_as_copied(link: HapticLink2D) -> void:
+	var state := link.take_copied_state()
+	var world := HapticWorld2D.find_for(self)
+	if state.size() != 3 or world == null or (not grounded and link.get_parent_link() == null):
+		return
+	var drawn: Transform2D = state[0]
+	var coordinate: float = state[1]
+	var stands := drawn
+	if link.joint == HapticLink2D.Joint.REVOLUTE:
+		stands = drawn.rotated_local(coordinate)
+	elif link.joint == HapticLink2D.Joint.PRISMATIC:
+		stands = drawn.translated_local(Vector2(coordinate * world.pixels_per_meter, 0.0))
+	var turn := absf(angle_difference(stands.get_rotation(), link.transform.get_rotation()))
+	if turn > _SAME_ANGLE or stands.origin.distance_to(link.transform.origin) > _SAME_PLACE:
+		return
+	var key := link.get_instance_id()
+	_rest[key] = drawn
+	_coordinates[key] = coordinate
+	_rates[key] = state[2]
 
 
 # its checks say why it does not move; what is wrong may be mended while the game runs

@@ -191,6 +191,7 @@ void add_limit(const JointSpec& joint, int i, double dt, Data& data) {
     if (!(gap < 2.0 * dt * std::abs(data.linkage.velocity[i]) + 1e-2))
         return;
     const double lever = joint.kind == JointKind::prismatic ? 1.0 : k_limit_lever * k_limit_lever;
+    // a damper alone is no stop: it goes with the wall's spring
     const bool given = joint.limit_stiffness > 0.0 || joint.limit_damping > 0.0;
     PatchRow& t = s.row[static_cast<std::size_t>(s.patches)];
     t = PatchRow{};
@@ -202,7 +203,7 @@ void add_limit(const JointSpec& joint, int i, double dt, Data& data) {
     r = PointRow{};
     r.patch = s.patches;
     r.gap = gap;
-    r.stiffness = given ? joint.limit_stiffness : k_limit_stiffness * lever;
+    r.stiffness = joint.limit_stiffness > 0.0 ? joint.limit_stiffness : k_limit_stiffness * lever;
     r.damping = given ? joint.limit_damping : k_limit_damping * lever;
     r.was_apart = gap > 0.0;
     s.normal_rows(s.points, i) = below <= above ? 1.0 : -1.0;
