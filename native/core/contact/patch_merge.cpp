@@ -9,7 +9,7 @@
 /// and is gone at r = 1: a box that is tilted onto its corner feels the full stiffness of the wall there, and
 /// nothing jumps on the way. (A share that follows the depths alone would be stiffer to turning than the
 /// wall, and chatter on hard walls; and so would one that never does, pressed in deep: a force F at a lever l
-/// that changes ends within the tilt s is a spring of 3 F l^2 / s to turning, 24 times the wall's for 20 N on
+/// that changes ends within the tilt s is a spring of 3 F l^2 / s to turning, 16 times the wall's for 20 N on
 /// 15000 N/m, and more than 500 Hz bear. With the depth F / K it is one of 3 K l^2 at most, and an end has a
 /// share as long as it overlaps.)
 ///
