@@ -314,7 +314,7 @@ func _check_cradle(swapped: bool, world_runs: bool = true) -> void:
 	assert_lt(cradle["gain"] as float, 2e-4)
 
 
-# a door at its upper stop, its copy and one that was saved and loaded: the stops are where they were
+# a door at its upper stop, its copy and one that was saved and loaded: stops are where they were
 func test_a_copy_of_a_linkage_that_has_moved_keeps_its_joints() -> void:
 	_with_gravity()
 	_linkage = Linkages.make_chain(2, Vector2(200, 20))
