@@ -36,8 +36,8 @@ std::unique_ptr<Neighborhood> walls(shared::Random& random, bool move) {
     return world;
 }
 
-struct Run {
-    Run(const Model& of, const Neighborhood& world, const Plan& plan)
+struct WallRun {
+    WallRun(const Model& of, const Neighborhood& world, const Plan& plan)
         : model(of)
         , data(std::make_unique<Data>()) {
         reset(model, *data, Pose(0.01, 0.02, 0.1));
@@ -50,11 +50,11 @@ struct Run {
     StepOutput out;
 };
 
-bool is_near(const Vec3& a, const Vec3& b) {
+bool is_about(const Vec3& a, const Vec3& b) {
     return (a - b).norm() <= 1e-12 * a.norm() + 1e-15;
 }
 
-bool same_step(const Run& a, const Run& b) {
+bool same_contact_step(const WallRun& a, const WallRun& b) {
     return a.data->pose == b.data->pose && a.data->velocity == b.data->velocity &&
            a.out.coupling == b.out.coupling && a.out.full_coupling == b.out.full_coupling &&
            a.out.contacts == b.out.contacts && a.out.colliding == b.out.colliding &&
@@ -63,9 +63,9 @@ bool same_step(const Run& a, const Run& b) {
            a.out.grip_bias == b.out.grip_bias;
 }
 
-bool near_step(const Run& a, const Run& b) {
-    return is_near(a.out.contact, b.out.contact) && is_near(a.out.environment, b.out.environment) &&
-           is_near(a.out.grip_acceleration, b.out.grip_acceleration) &&
+bool near_contact_step(const WallRun& a, const WallRun& b) {
+    return is_about(a.out.contact, b.out.contact) && is_about(a.out.environment, b.out.environment) &&
+           is_about(a.out.grip_acceleration, b.out.grip_acceleration) &&
            std::abs(a.out.source_work - b.out.source_work) <= 1e-12 * std::abs(a.out.source_work) + 1e-15 &&
            std::abs(a.out.stored_energy - b.out.stored_energy) <= 1e-12 * a.out.stored_energy + 1e-15;
 }
@@ -86,8 +86,8 @@ TEST_SUITE("rigid tool in contact") {
             const double grip_x = random.uniform(-0.02, 0.02);
             model.tool.grip.point = Vec2(grip_x, random.uniform(-0.01, 0.01));
             const auto world = walls(random, i % 4 == 0);
-            Run general(model, *world, Plan{});
-            Run own(model, *world, choose_plan(model, *world));
+            WallRun general(model, *world, Plan{});
+            WallRun own(model, *world, choose_plan(model, *world));
             REQUIRE_FALSE(own.data->plan.runs(Stage::contact_system));
             HandInput hand;
             hand.held = i % 7 != 0;
@@ -107,8 +107,8 @@ TEST_SUITE("rigid tool in contact") {
                 step(own.model, *own.data, hand, 0.001, own.out);
                 CAPTURE(i);
                 CAPTURE(k);
-                REQUIRE(same_step(general, own));
-                REQUIRE(near_step(general, own));
+                REQUIRE(same_contact_step(general, own));
+                REQUIRE(near_contact_step(general, own));
                 const int felt = own.data->patches.count;
                 touching += felt > 0 ? 1 : 0;
                 alone += felt > 0 && own.data->system.patches == 0 ? 1 : 0;
