@@ -156,7 +156,7 @@ func _say_when_it_ran_away() -> void:
 	if _said_ran_away or faults & _RAN_AWAY == 0:
 		return
 	_said_ran_away = true
-	push_error(
+	push_warning(
 		(
 			(
 				"%s ran away (beyond 1000 km or 1000 km/s, or no number; its links had been seen at"
