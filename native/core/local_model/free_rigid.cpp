@@ -33,28 +33,17 @@ Vec3 end_velocity(const FreeTool& free, const Vec3& start, const HandInput& hand
     return right;
 }
 
-// mean force of a coupling over a step that ends with the velocity v
-Wrench spring_of(const FreeTool& free, const HandInput& hand, const Vec3& v) {
-    const Vec3 grip = free.grip.velocity(v);
-    const Vec3 distance = hand.target - free.at - free.grip.velocity(free.dt * v);
-    Wrench force =
-        hand.stiffness.cwiseProduct(distance) + hand.damping.cwiseProduct(hand.target_velocity - grip);
-    if (!free.grip.pose)
-        force.z() = 0.0;
-    return force;
-}
-
 // the coupling's part of the output; the velocity at the end of the step
 Vec3 step_held(const FreeTool& free, const Vec3& start, const HandInput& hand, StepOutput& output) {
     HandInput used = at_share(hand);
     Vec3 v = end_velocity(free, start, used);
-    Wrench full = spring_of(free, hand, v);
+    Wrench full = coupling_of_rigid(free.grip, free.at, hand, free.dt, v);
     if (hold_back(hand, full, used)) {
         v = end_velocity(free, start, used);
-        full = spring_of(free, hand, v);
+        full = coupling_of_rigid(free.grip, free.at, hand, free.dt, v);
     }
     output.full_coupling = full;
-    output.coupling = spring_of(free, used, v) + used.force - hand.force;
+    output.coupling = coupling_of_rigid(free.grip, free.at, used, free.dt, v) + used.force - hand.force;
     return v;
 }
 

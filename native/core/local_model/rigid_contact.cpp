@@ -404,17 +404,6 @@ class RigidContacts {
     std::array<Contact, k_max_patches> contact_;
 };
 
-// mean force of a coupling over a step that ends with the velocity v
-Wrench coupling(const RigidGrip& grip, const Pose& at, const HandInput& hand, double dt, const Vec3& v) {
-    const Vec3 rate = grip.velocity(v);
-    const Vec3 distance = hand.target - at - grip.velocity(dt * v);
-    Wrench force =
-        hand.stiffness.cwiseProduct(distance) + hand.damping.cwiseProduct(hand.target_velocity - rate);
-    if (!grip.pose)
-        force.z() = 0.0;
-    return force;
-}
-
 } // namespace
 
 bool step_in_contact(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output) {
@@ -431,11 +420,11 @@ bool step_in_contact(const Model& model, Data& data, const HandInput& hand, doub
         return false;
     Wrench full = Wrench::Zero();
     if (hand.held) {
-        full = coupling(grip, at, hand, dt, v);
+        full = coupling_of_rigid(grip, at, hand, dt, v);
         if (hold_back(hand, full, used)) {
             if (!contacts.solve(used, grip, at, v))
                 return false;
-            full = coupling(grip, at, hand, dt, v);
+            full = coupling_of_rigid(grip, at, hand, dt, v);
         }
     }
     if (contacts.meets(row_of(v)))
@@ -448,7 +437,7 @@ bool step_in_contact(const Model& model, Data& data, const HandInput& hand, doub
         data.movable[static_cast<std::size_t>(i)].row = -1;
     if (hand.held) {
         output.full_coupling = full;
-        output.coupling = coupling(grip, at, used, dt, v) + used.force - hand.force;
+        output.coupling = coupling_of_rigid(grip, at, used, dt, v) + used.force - hand.force;
     }
     const Vec3 weight = contacts.weight();
     const Vec3 force = hand.held ? hand.force : Vec3(Vec3::Zero());

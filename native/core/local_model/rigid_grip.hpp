@@ -53,4 +53,16 @@ inline void couple_rigid(const RigidGrip& grip, const Pose& at, const HandInput&
     right += grip.wrench(push);
 }
 
+// Mean force of the coupling over a step that ends with the velocity v; `at` is the pose of the grip.
+inline Wrench coupling_of_rigid(const RigidGrip& grip, const Pose& at, const HandInput& hand, double dt,
+                                const Vec3& v) {
+    const Vec3 rate = grip.velocity(v);
+    const Vec3 distance = hand.target - at - grip.velocity(dt * v);
+    Wrench force =
+        hand.stiffness.cwiseProduct(distance) + hand.damping.cwiseProduct(hand.target_velocity - rate);
+    if (!grip.pose)
+        force.z() = 0.0;
+    return force;
+}
+
 } // namespace haptics::local
