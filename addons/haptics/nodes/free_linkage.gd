@@ -54,21 +54,8 @@ func start() -> bool:
 	_links = _linkage.get_links()
 	if _links.is_empty() or not _native.is_valid():
 		return false
-	var settings := _world.to_settings()
-	(
-		settings
-		. merge(
-			{
-				"coupling": "virtual_coupling",
-				"observer": false,
-				"hold_at_start": false,
-				"arm_at_start": false,
-			},
-			true
-		)
-	)
 	var problems := PackedStringArray()
-	var wrong := _native.configure(settings)
+	var wrong := _native.configure(WorldSettings.without_hand(_world))
 	wrong.append_array(_native.set_device({"kind": "simulated_pantograph"}))
 	wrong.append_array(
 		_native.set_tool(LinkageReader.describe(_linkage, _links[-1], _units, problems))

@@ -5,6 +5,7 @@ extends RefCounted
 
 const Self := preload("stand_in_host.gd")
 const Gateway := preload("gateway.gd")
+const WorldSettings := preload("world_settings.gd")
 
 # by instance id of the world; gone with the last linkage that uses it
 static var _hosts: Dictionary[int, WeakRef] = {}
@@ -37,23 +38,10 @@ func _start(world: HapticWorld2D) -> bool:
 	_world = world
 	if not native.is_valid():
 		return false
-	var settings := world.to_settings()
-	(
-		settings
-		. merge(
-			{
-				"coupling": "virtual_coupling",
-				"observer": false,
-				"hold_at_start": false,
-				"arm_at_start": false,
-			},
-			true
-		)
-	)
 	var point := {
 		"id": 1, "kind": "circle", "points": PackedFloat64Array([0.0, 0.0]), "radius": 0.001
 	}
-	var wrong := native.configure(settings)
+	var wrong := native.configure(WorldSettings.without_hand(world))
 	wrong.append_array(native.set_device({"kind": "simulated_pantograph"}))
 	wrong.append_array(native.set_tool({"body": {"kind": "tool", "mass": 0.1, "shapes": [point]}}))
 	if not wrong.is_empty() or not native.start(false, 0.0).is_empty():

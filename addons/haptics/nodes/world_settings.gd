@@ -54,6 +54,16 @@ static func of(world: HapticWorld2D) -> Dictionary:
 	}
 
 
+## The same for a loop that nobody holds: what moves in it moves by itself.
+static func without_hand(world: HapticWorld2D) -> Dictionary:
+	var settings := world.to_settings()
+	settings["coupling"] = "virtual_coupling"
+	settings["observer"] = false
+	settings["hold_at_start"] = false
+	settings["arm_at_start"] = false
+	return settings
+
+
 ## What is wrong with choices and with angles, in words. Angles are told as the scene has them,
 ## clockwise, and the native side would tell their opposites.
 static func problems_of(world: HapticWorld2D) -> PackedStringArray:
