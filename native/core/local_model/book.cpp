@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 
+#include "hold_back.hpp"
 #include "internal.hpp"
 
 namespace haptics::local {
@@ -136,9 +137,7 @@ HandInput at_share(const HandInput& hand) {
 }
 
 bool hold_back(const HandInput& hand, const Wrench& full, HandInput& used) {
-    // part of the coupling that takes effect: the gate's share, less what the device cannot answer
-    const double effective = std::min({hand.share, hand.max_force / std::max(full.head<2>().norm(), 1e-300),
-                                       hand.max_torque / std::max(std::abs(full.z()), 1e-300)});
+    const double effective = effective_share(hand, full);
     if (effective >= hand.share)
         return false;
     used.stiffness.setZero();

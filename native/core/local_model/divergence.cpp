@@ -6,6 +6,7 @@
 // began, at rest and out of contact, with the movables that ran away at their snapshot's pose; the step gives
 // no force, and StepOutput::diverged lets the session take it off the hand.
 
+#include <algorithm>
 #include <cmath>
 
 #include "internal.hpp"
@@ -25,8 +26,10 @@ bool within(const Vector& v, double most) {
 }
 
 bool is_sane(const Pose& pose, const Twist& velocity) {
-    return within(pose.head<2>(), k_farthest) && std::isfinite(pose.z()) &&
-           within(velocity.head<2>(), k_fastest) && std::abs(velocity.z()) < k_fastest_turn;
+    // each is false for what is not a number
+    return std::abs(pose.x()) < k_farthest && std::abs(pose.y()) < k_farthest && std::isfinite(pose.z()) &&
+           std::abs(velocity.x()) < k_fastest && std::abs(velocity.y()) < k_fastest &&
+           std::abs(velocity.z()) < k_fastest_turn;
 }
 
 bool tool_is_sane(const Model& model, const Data& data) {
@@ -54,29 +57,22 @@ void put_back(MovableState& m, Data& data) {
     b.velocity.setZero();
 }
 
-} // namespace
-
-LinkageVector tool_configuration(const Model& model, const Data& data) {
-    // assigned: a copy would take all that it has room for, a third of a free step's time
-    LinkageVector start;
-    if (model.tool.articulated)
-        start = data.linkage.position;
-    else
-        start = data.pose;
-    return start;
+bool is_sane(const MovableState& m) {
+    return is_sane(m.belief.pose, m.belief.velocity) && m.belief.given.allFinite();
 }
 
-void put_back_what_diverged(const Model& model, Data& data, const LinkageVector& start, StepOutput& output) {
-    bool lost = !tool_is_sane(model, data);
-    for (std::int32_t i = 0; i < data.movable_count; ++i) {
-        MovableState& m = data.movable[static_cast<std::size_t>(i)];
-        if (is_sane(m.belief.pose, m.belief.velocity) && m.belief.given.allFinite())
-            continue;
-        lost = true;
-        put_back(m, data);
-    }
-    if (!lost)
-        return;
+} // namespace
+
+bool ran_away(const Model& model, const Data& data) {
+    return !tool_is_sane(model, data) ||
+           !std::all_of(data.movable.begin(), data.movable.begin() + data.movable_count,
+                        [](const MovableState& m) { return is_sane(m); });
+}
+
+void put_back(const Model& model, Data& data, const LinkageVector& start, StepOutput& output) {
+    for (std::int32_t i = 0; i < data.movable_count; ++i)
+        if (!is_sane(data.movable[static_cast<std::size_t>(i)]))
+            put_back(data.movable[static_cast<std::size_t>(i)], data);
     output.clear();
     output.diverged = true;
     data.patches.count = 0;

@@ -7,47 +7,10 @@
 // the same to the last bit: what the plan leaves out here can be left out in one step and used in the next.
 
 #include "internal.hpp"
+#include "outcome.hpp"
 #include "rigid_grip.hpp"
-#include "small_solve.hpp"
 
 namespace haptics::local {
-namespace {
-
-struct FreeTool {
-    const ToolModel& tool;
-    RigidGrip grip;
-    // of the grip
-    Pose at;
-    Vec3 weight;
-    double dt;
-};
-
-Vec3 end_velocity(const FreeTool& free, const Vec3& start, const HandInput& hand) {
-    const Vec3 mass(free.tool.mass, free.tool.mass, free.tool.inertia);
-    Vec3 right = mass.cwiseProduct(start) + free.dt * free.weight;
-    if (!hand.held)
-        return right.cwiseQuotient(mass);
-    Mat3 base = mass.asDiagonal();
-    couple_rigid(free.grip, free.at, hand, free.dt, 0.0, base, right);
-    solve_definite(base, right);
-    return right;
-}
-
-// the coupling's part of the output; the velocity at the end of the step
-Vec3 step_held(const FreeTool& free, const Vec3& start, const HandInput& hand, StepOutput& output) {
-    HandInput used = at_share(hand);
-    Vec3 v = end_velocity(free, start, used);
-    Wrench full = coupling_of_rigid(free.grip, free.at, hand, free.dt, v);
-    if (hold_back(hand, full, used)) {
-        v = end_velocity(free, start, used);
-        full = coupling_of_rigid(free.grip, free.at, hand, free.dt, v);
-    }
-    output.full_coupling = full;
-    output.coupling = coupling_of_rigid(free.grip, free.at, used, free.dt, v) + used.force - hand.force;
-    return v;
-}
-
-} // namespace
 
 void step_freely(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output) {
     const ToolModel& tool = model.tool;
@@ -57,30 +20,45 @@ void step_freely(const Model& model, Data& data, const HandInput& hand, double d
     for (int i = 0; i < data.movable_count; ++i)
         data.movable[static_cast<std::size_t>(i)].row = -1;
 
+    const double x = data.pose.x();
+    const double y = data.pose.y();
     // a tool that is held at its center needs no angle
     const Vec2 lever = data.grip.point.isZero(0.0) ? data.grip.point : rotate(data.pose.z(), data.grip.point);
-    const Vec2 weight(tool.mass * data.gravity.x(), tool.mass * data.gravity.y());
-    const FreeTool free{tool,
-                        {lever, data.grip.pose},
-                        {data.pose.x() + lever.x(), data.pose.y() + lever.y(), data.pose.z()},
-                        {weight.x(), weight.y(), 0.0},
-                        dt};
-    output.grip_mobility = free.grip.mobility(tool.mass, tool.inertia);
-    const double spin = data.velocity.z();
-    const Vec3 v =
-        hand.held ? step_held(free, data.velocity, hand, output) : end_velocity(free, data.velocity, hand);
+    const RigidGrip grip{lever.x(), lever.y(), data.grip.pose};
+    const Plain3 at{x + grip.x, y + grip.y, data.pose.z()};
+    const Plain3 weight{tool.mass * data.gravity.x(), tool.mass * data.gravity.y(), 0.0};
+    const Plain3 mass{tool.mass, tool.mass, tool.inertia};
+    const Plain3 start = plain(data.velocity);
+    output.grip_mobility = grip.mobility(tool.mass, tool.inertia);
+    output.grip_acceleration = {1.0 / tool.mass * weight.x, 1.0 / tool.mass * weight.y, 0.0};
+    output.grip_bias = {-start.z * start.z * grip.x, -start.z * start.z * grip.y, 0.0};
+    output.environment = {weight.x, weight.y, (x - at.x) * weight.y - (y - at.y) * weight.x};
 
-    const Vec3 grip = free.grip.velocity(v);
-    const Vec3 force = hand.held ? hand.force : Vec3(Vec3::Zero());
-    output.source_work = dt * (free.weight.dot(v) + force.dot(grip));
-    output.environment = {weight.x(), weight.y(), cross(data.pose.head<2>() - free.at.head<2>(), weight)};
-    output.grip_acceleration = {1.0 / tool.mass * weight.x(), 1.0 / tool.mass * weight.y(), 0.0};
-    output.grip_bias = {-spin * spin * lever.x(), -spin * spin * lever.y(), 0.0};
+    const Plain3 momentum = mass * start + dt * weight;
+    Plain3 v{momentum.x / mass.x, momentum.y / mass.y, momentum.z / mass.z};
+    Plain3 force{0.0, 0.0, 0.0};
+    if (hand.held) {
+        const RigidCoupling coupling(grip, at, hand.target, hand, dt);
+        const auto end = [&](const UsedCoupling& used, Plain3& end_velocity) {
+            Arrow matrix{mass.x, mass.y, mass.z};
+            Plain3 right = momentum;
+            coupling.add(used, matrix, right);
+            end_velocity = matrix.solve(right);
+            return true;
+        };
+        RigidCoupling::Forces forces;
+        coupling.solve(end, v, forces);
+        forces.tell(output);
+        force = plain(hand.force);
+    }
+    output.source_work = dt * (weight.dot(v) + force.dot(grip.velocity(v)));
 
-    data.velocity = v;
-    data.pose += dt * v;
+    data.velocity = v.vector();
+    data.pose = {x + dt * v.x, y + dt * v.y, data.pose.z() + dt * v.z};
     place_tool(model, data);
     move_neighbors(data, dt);
+    Outcomes(data, output).end();
+    output.stored_energy = rigid_energy(tool, v);
 }
 
 } // namespace haptics::local

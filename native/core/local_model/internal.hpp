@@ -75,10 +75,11 @@ bool collide(const Model& model, Data& data, StepOutput& output);
 // Writes the states that follow from the step into the patches, counts them and lists events.
 void finish(const Model& model, Data& data, StepOutput& output);
 
-// Pose of a rigid tool, or the coordinates of a linkage.
-LinkageVector tool_configuration(const Model& model, const Data& data);
-// Brings a state that no scene can be in back, the tool to `start` (divergence.cpp).
-void put_back_what_diverged(const Model& model, Data& data, const LinkageVector& start, StepOutput& output);
+// Something is in a state that no scene can be in (divergence.cpp).
+bool ran_away(const Model& model, const Data& data);
+// Puts the tool back at `start`, the pose of a rigid tool or the coordinates of a linkage, and with it what
+// ran away.
+void put_back(const Model& model, Data& data, const LinkageVector& start, StepOutput& output);
 
 // Moves kinematic bodies and free movables to where they are `dt` later, and blends in corrections.
 void move_neighbors(Data& data, double dt);

@@ -123,8 +123,16 @@ class PrimalSolver {
         if constexpr (N == 3) {
             if (!model_.tool.articulated) {
                 const Vec2 r(s_.grip(1, 2), -s_.grip(0, 2));
-                couple_rigid({r, data_.grip.pose}, grip_pose(data_.grip, data_.pose), hand, dt_, left, base_,
-                             right_);
+                const Pose target = hand.target - left * hand.target_velocity;
+                const RigidCoupling coupling({r.x(), r.y(), data_.grip.pose},
+                                             plain(grip_pose(data_.grip, data_.pose)), target, hand, dt_);
+                Arrow arrow{base_(0, 0), base_(1, 1), base_(2, 2)};
+                Plain3 right = plain(right_);
+                coupling.add({1.0, plain(hand.force)}, arrow, right);
+                right_ = right.vector();
+                base_.diagonal() = Vec3(arrow.a, arrow.b, arrow.c);
+                base_(2, 0) = base_(0, 2) = arrow.p;
+                base_(2, 1) = base_(1, 2) = arrow.q;
                 return;
             }
         }

@@ -265,7 +265,7 @@ void need_inverse(const Model& model, Data& data) {
 Mat3 mobility(const Model& model, Data& data) {
     ContactSystem& s = data.system;
     if (!model.tool.articulated) {
-        const RigidGrip grip{{s.grip(1, 2), -s.grip(0, 2)}, data.grip.pose};
+        const RigidGrip grip{s.grip(1, 2), -s.grip(0, 2), data.grip.pose};
         return grip.mobility(model.tool.mass, model.tool.inertia);
     }
     Mat3 result;
@@ -289,8 +289,7 @@ Vec3 tool_response(const Model& model, Data& data, const LinkageVector& force) {
 double tool_energy(const Model& model, const Data& data) {
     const ToolModel& tool = model.tool;
     if (!tool.articulated)
-        return 0.5 * tool.mass * data.velocity.head<2>().squaredNorm() +
-               0.5 * tool.inertia * data.velocity.z() * data.velocity.z();
+        return rigid_energy(tool, plain(data.velocity));
     double energy = kinetic_energy(tool.linkage, data.linkage);
     for (int i = 0; data.system.has_joint_springs && i < tool.linkage.freedoms; ++i) {
         const Vec3 spring = joint_spring(model, data, i);

@@ -22,19 +22,6 @@
 namespace haptics::local {
 namespace {
 
-// A row [n_x, n_y, r x n]. Plain numbers here and below: the compiler keeps them in registers.
-struct Row {
-    double x;
-    double y;
-    double turn;
-
-    [[nodiscard]] double dot(const Row& v) const { return (x * v.x + y * v.y) + turn * v.turn; }
-};
-
-Row row_of(const Vec3& v) {
-    return {v.x(), v.y(), v.z()};
-}
-
 // The numbers of one point that a step needs. Not set before they are written: there is room for many.
 struct Point {
     double turn; // of its row; x and y are those of the patch
@@ -65,10 +52,12 @@ struct Contact {
     double spring;
     double force;
 
-    [[nodiscard]] double rate(const Point& p, const Row& v) const {
-        return Row{nx, ny, p.turn}.dot(v) - p.drive;
+    [[nodiscard]] double rate(const Point& p, const Plain3& v) const {
+        return Plain3{nx, ny, p.turn}.dot(v) - p.drive;
     }
-    [[nodiscard]] double slip_rate(const Row& v) const { return Row{-ny, nx, slip_turn}.dot(v) - drive; }
+    [[nodiscard]] double slip_rate(const Plain3& v) const {
+        return Plain3{-ny, nx, slip_turn}.dot(v) - drive;
+    }
     [[nodiscard]] double pressing() const {
         return points > 1 ? point[0].force + point[1].force : point[0].force;
     }
@@ -107,7 +96,7 @@ class RigidContacts {
         const bool walls_move = data_.plan.runs(Stage::moving_walls);
         const double center_x = data_.pose.x();
         const double center_y = data_.pose.y();
-        const Row v = row_of(data_.velocity);
+        const Plain3 v = plain(data_.velocity);
         count_ = data_.patches.count;
         for (int i = 0; i < count_; ++i) {
             const Patch& p = data_.patches.patch[static_cast<std::size_t>(i)];
@@ -161,30 +150,29 @@ class RigidContacts {
     }
 
     // the velocity at the end of the step; false when it is not for this path
-    bool solve(const HandInput& hand, const RigidGrip& grip, const Pose& at, Vec3& v) {
+    bool solve(const RigidCoupling* coupling, const UsedCoupling& used, Plain3& v) {
         const ToolModel& tool = model_.tool;
-        const Vec3 mass(tool.mass, tool.mass, tool.inertia);
-        Mat3 base = mass.asDiagonal();
-        Vec3 right = mass.cwiseProduct(data_.velocity) + dt_ * weight();
-        if (hand.held)
-            couple_rigid(grip, at, hand, dt_, 0.0, base, right);
+        const Plain3 mass{tool.mass, tool.mass, tool.inertia};
+        Arrow base{mass.x, mass.y, mass.z};
+        Plain3 right = mass * plain(data_.velocity) + dt_ * weight();
+        if (coupling != nullptr)
+            coupling->add(used, base, right);
         if (model_.settings.integrator == Integrator::semi_implicit) {
             start_forces(right);
-            solve_definite(base, right);
-            v = right;
+            v = base.solve(right);
             return true;
         }
         start_sets();
         for (int left = k_max_iterations; left > 0; --left) {
             solve_sets(base, right, v);
-            if (update_sets(row_of(v)))
+            if (update_sets(v))
                 return true;
         }
         return false;
     }
 
     // something that was apart closes with the motion that was found
-    [[nodiscard]] bool meets(const Row& v) const {
+    [[nodiscard]] bool meets(const Plain3& v) const {
         if (!awaits_hits_ || !any_open_)
             return false;
         for (int i = 0; i < count_; ++i) {
@@ -200,13 +188,13 @@ class RigidContacts {
 
     // What the contacts did in the step.
     struct Sum {
-        Wrench force; // with the torque about the center of mass
+        Plain3 force; // with the torque about the center of mass
         double work;  // of walls that move
         double energy;
     };
 
     // gaps, friction springs and states at the end of the step, into the patches
-    Sum tell(const Row& v, Data& data, StepOutput& output) const {
+    Sum tell(const Plain3& v, Data& data, StepOutput& output) const {
         double energy = 0.0;
         double x = 0.0;
         double y = 0.0;
@@ -246,7 +234,7 @@ class RigidContacts {
         return {{x, y, turn}, dt_ * power, energy};
     }
 
-    [[nodiscard]] Vec3 weight() const {
+    [[nodiscard]] Plain3 weight() const {
         const double mass = model_.tool.mass;
         return {mass * data_.gravity.x(), mass * data_.gravity.y(), 0.0};
     }
@@ -266,15 +254,15 @@ class RigidContacts {
     static double damping_of(const Point& p) { return p.gap > 0.0 ? 0.0 : p.damping; }
 
     // the friction anchor moves only while sliding
-    [[nodiscard]] double spring_after(const Contact& c, const Row& v) const {
+    [[nodiscard]] double spring_after(const Contact& c, const Plain3& v) const {
         if (c.mode == FrictionMode::stick)
             return c.spring + dt_ * c.slip_rate(v);
         return c.mode == FrictionMode::off || c.stiffness <= 0.0 ? 0.0 : -c.force / c.stiffness;
     }
 
     // semi-implicit: forces of the start of the step
-    void start_forces(Vec3& right) {
-        const Row v = row_of(data_.velocity);
+    void start_forces(Plain3& right) {
+        const Plain3 v = plain(data_.velocity);
         // the points of all contacts first, as the general path has it
         for (int i = 0; i < count_; ++i) {
             Contact& c = contact_[static_cast<std::size_t>(i)];
@@ -282,9 +270,9 @@ class RigidContacts {
                 Point& p = c.point[static_cast<std::size_t>(k)];
                 p.force = p.gap < 0.0 ? std::max(0.0, -p.stiffness * p.gap - p.damping * p.rate) : 0.0;
                 const double push = dt_ * p.force;
-                right.x() += push * c.nx;
-                right.y() += push * c.ny;
-                right.z() += push * p.turn;
+                right.x += push * c.nx;
+                right.y += push * c.ny;
+                right.z += push * p.turn;
             }
         }
         for (int i = 0; i < count_; ++i) {
@@ -294,9 +282,9 @@ class RigidContacts {
                 continue;
             c.rub(-c.stiffness * c.spring - c.damping * c.slip_rate(v));
             const double push = dt_ * c.force;
-            right.x() -= push * c.ny;
-            right.y() += push * c.nx;
-            right.z() += push * c.slip_turn;
+            right.x -= push * c.ny;
+            right.y += push * c.nx;
+            right.z += push * c.slip_turn;
         }
     }
 
@@ -315,29 +303,31 @@ class RigidContacts {
         }
     }
 
-    void solve_sets(const Mat3& base, const Vec3& right, Vec3& v) {
-        Mat3 work = base;
-        v = right;
+    void solve_sets(const Arrow& base, const Plain3& right, Plain3& v) {
+        Mat3 work = Vec3(base.a, base.b, base.c).asDiagonal();
+        work(2, 0) = work(0, 2) = base.p;
+        work(2, 1) = work(1, 2) = base.q;
+        Vec3 x = right.vector();
         const bool symmetric = !slides_;
         // work += (stiff along) row', v += push along
-        const auto add = [&](double stiff, double push, const Row& along, const Row& row) {
-            const double x = stiff * along.x;
-            const double y = stiff * along.y;
-            const double turn = stiff * along.turn;
-            work(0, 0) += x * row.x;
-            work(1, 0) += y * row.x;
-            work(2, 0) += turn * row.x;
-            work(1, 1) += y * row.y;
-            work(2, 1) += turn * row.y;
-            work(2, 2) += turn * row.turn;
+        const auto add = [&](double stiff, double push, const Plain3& along, const Plain3& row) {
+            const double of_x = stiff * along.x;
+            const double of_y = stiff * along.y;
+            const double of_turn = stiff * along.z;
+            work(0, 0) += of_x * row.x;
+            work(1, 0) += of_y * row.x;
+            work(2, 0) += of_turn * row.x;
+            work(1, 1) += of_y * row.y;
+            work(2, 1) += of_turn * row.y;
+            work(2, 2) += of_turn * row.z;
             if (!symmetric) {
-                work(0, 1) += x * row.y;
-                work(0, 2) += x * row.turn;
-                work(1, 2) += y * row.turn;
+                work(0, 1) += of_x * row.y;
+                work(0, 2) += of_x * row.z;
+                work(1, 2) += of_y * row.z;
             }
-            v.x() += push * along.x;
-            v.y() += push * along.y;
-            v.z() += push * along.turn;
+            x.x() += push * along.x;
+            x.y() += push * along.y;
+            x.z() += push * along.z;
         };
         for (int i = 0; i < count_; ++i) {
             const Contact& c = contact_[static_cast<std::size_t>(i)];
@@ -349,7 +339,7 @@ class RigidContacts {
                     continue;
                 const double stiff = dt_ * (dt_ * p.stiffness + damping_of(p));
                 const double push = stiff * p.drive - dt_ * p.stiffness * p.gap;
-                const Row row{c.nx, c.ny, p.turn};
+                const Plain3 row{c.nx, c.ny, p.turn};
                 add(stiff, push, {c.nx - pull * c.ny, c.ny + pull * c.nx, p.turn + pull * c.slip_turn}, row);
             }
         }
@@ -358,17 +348,18 @@ class RigidContacts {
             if (c.mode != FrictionMode::stick)
                 continue;
             const double stiff = dt_ * (dt_ * c.stiffness + c.damping);
-            const Row row{-c.ny, c.nx, c.slip_turn};
+            const Plain3 row{-c.ny, c.nx, c.slip_turn};
             add(stiff, stiff * c.drive - dt_ * c.stiffness * c.spring, row, row);
         }
         if (symmetric)
-            solve_definite(work, v);
+            solve_definite(work, x);
         else
-            solve_pivoted(work, v);
+            solve_pivoted(work, x);
+        v = plain(x);
     }
 
     // true when what was assumed holds with the velocity that follows
-    bool update_sets(const Row& v) {
+    bool update_sets(const Plain3& v) {
         bool same = true;
         slides_ = false;
         for (int i = 0; i < count_; ++i) {
@@ -412,51 +403,49 @@ bool step_in_contact(const Model& model, Data& data, const HandInput& hand, doub
     if (!contacts.read())
         return false;
     const Vec2 lever = data.grip.point.isZero(0.0) ? data.grip.point : rotate(data.pose.z(), data.grip.point);
-    const RigidGrip grip{lever, data.grip.pose};
-    const Pose at(data.pose.x() + lever.x(), data.pose.y() + lever.y(), data.pose.z());
-    HandInput used = at_share(hand);
-    Vec3 v;
-    if (!contacts.solve(used, grip, at, v))
-        return false;
-    Wrench full = Wrench::Zero();
+    const RigidGrip grip{lever.x(), lever.y(), data.grip.pose};
+    Plain3 v{0.0, 0.0, 0.0};
+    Plain3 force{0.0, 0.0, 0.0};
+    RigidCoupling::Forces forces{force, force};
     if (hand.held) {
-        full = coupling_of_rigid(grip, at, hand, dt, v);
-        if (hold_back(hand, full, used)) {
-            if (!contacts.solve(used, grip, at, v))
-                return false;
-            full = coupling_of_rigid(grip, at, hand, dt, v);
-        }
+        const Plain3 at{data.pose.x() + grip.x, data.pose.y() + grip.y, data.pose.z()};
+        const RigidCoupling coupling(grip, at, hand.target, hand, dt);
+        const auto end = [&](const UsedCoupling& used, Plain3& end_velocity) {
+            return contacts.solve(&coupling, used, end_velocity);
+        };
+        if (!coupling.solve(end, v, forces))
+            return false;
+        force = plain(hand.force);
+    } else if (!contacts.solve(nullptr, {0.0, force}, v)) {
+        return false;
     }
-    if (contacts.meets(row_of(v)))
+    if (contacts.meets(v))
         return false;
 
+    forces.tell(output);
     ContactSystem& s = data.system;
     s.points = 0;
     s.patches = 0;
     for (int i = 0; i < data.movable_count; ++i)
         data.movable[static_cast<std::size_t>(i)].row = -1;
-    if (hand.held) {
-        output.full_coupling = full;
-        output.coupling = coupling_of_rigid(grip, at, used, dt, v) + used.force - hand.force;
-    }
-    const Vec3 weight = contacts.weight();
-    const Vec3 force = hand.held ? hand.force : Vec3(Vec3::Zero());
+    const Plain3 weight = contacts.weight();
     const double spin = data.velocity.z();
     output.grip_mobility = grip.mobility(tool.mass, tool.inertia);
-    output.grip_bias = {-spin * spin * lever.x(), -spin * spin * lever.y(), 0.0};
+    output.grip_bias = {-spin * spin * grip.x, -spin * spin * grip.y, 0.0};
 
-    data.velocity = v;
-    data.pose += dt * v;
+    data.velocity = v.vector();
+    data.pose += dt * data.velocity;
     place_tool(model, data);
     move_neighbors(data, dt);
-    const auto [sum, wall_work, energy] = contacts.tell(row_of(v), data, output);
-    output.stored_energy = energy + tool_energy(model, data);
+    const auto [sum, wall_work, energy] = contacts.tell(v, data, output);
+    output.stored_energy = energy + rigid_energy(tool, v);
     output.source_work = wall_work + dt * (weight.dot(v) + force.dot(grip.velocity(v)));
-    output.contact = {sum.x(), sum.y(), sum.z() - cross(lever, sum.head<2>())};
-    output.environment = output.contact + Wrench(weight.x(), weight.y(), -cross(lever, weight.head<2>()));
-    const Vec3 total = sum + weight;
+    output.contact = {sum.x, sum.y, sum.z - (grip.x * sum.y - grip.y * sum.x)};
+    output.environment =
+        output.contact + Wrench(weight.x, weight.y, -(grip.x * weight.y - grip.y * weight.x));
+    const Plain3 total = sum + weight;
     output.grip_acceleration =
-        grip.velocity({total.x() / tool.mass, total.y() / tool.mass, total.z() / tool.inertia});
+        grip.velocity({total.x / tool.mass, total.y / tool.mass, total.z / tool.inertia}).vector();
     return true;
 }
 

@@ -62,13 +62,13 @@ enum class Contacts : std::uint8_t { sought, kept };
 
 void make_step(const Model& model, Data& data, const HandInput& hand, double dt, Contacts contacts,
                StepOutput& output) {
-    local::begin_tool_step(model, data);
+    if (model.tool.articulated || data.plan.runs(Stage::detection))
+        local::begin_tool_step(model, data);
     if (contacts == Contacts::sought)
         find_contacts(model, data, dt);
     const bool exact = model.settings.integrator == Integrator::exact;
     if (data.patches.count == 0 && !exact && !data.plan.runs(Stage::free_system)) {
         local::step_freely(model, data, hand, dt, output);
-        local::finish(model, data, output);
         return;
     }
     if (!exact && !data.plan.runs(Stage::contact_system) &&
@@ -89,9 +89,16 @@ void make_step(const Model& model, Data& data, const HandInput& hand, double dt,
 void guarded_step(const Model& model, Data& data, const HandInput& hand, double dt, Contacts contacts,
                   StepOutput& output) {
     output.clear();
-    const LinkageVector start = local::tool_configuration(model, data);
+    const Pose start = data.pose;
+    LinkageVector coordinates; // assigned: a copy would take all that it has room for
+    if (model.tool.articulated)
+        coordinates = data.linkage.position;
     make_step(model, data, hand, dt, contacts, output);
-    local::put_back_what_diverged(model, data, start, output);
+    if (local::ran_away(model, data)) {
+        if (!model.tool.articulated)
+            coordinates = start;
+        local::put_back(model, data, coordinates, output);
+    }
     ++data.step;
 }
 
