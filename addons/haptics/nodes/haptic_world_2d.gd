@@ -55,7 +55,7 @@ enum Contact {
 enum Integrator {
 	## Stable for every stiffness and mass; damps fast contact modes.
 	LINEARLY_IMPLICIT,
-	## Cheapest; needs m > (K h² + 2 B h) / 4 per contact.
+	## Cheapest; needs m > (K h² + 2 B h) / 4 per contact, else steps are linearly implicit.
 	SEMI_IMPLICIT,
 	## Solves contacts exactly from event to event within the step: a bounce loses only what its damper
 	## takes, however stiff. Costs several times more. Where it does not apply, the linearly implicit

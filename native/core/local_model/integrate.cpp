@@ -32,6 +32,7 @@
 
 #include "contact_rules.hpp"
 #include "dense_solver.hpp"
+#include "explicit_step.hpp"
 #include "internal.hpp"
 #include "primal_solver.hpp"
 #include "row_solver.hpp"
@@ -52,6 +53,38 @@ bool solve_primal(const Model& model, Data& data, const HandInput& hand, double 
                   Integrator integrator) {
     PrimalSolver<N> solver(model, data, hand, dt, left);
     return solver.run(integrator);
+}
+
+// J D^-1 J' of a row
+double mobility_of(const Model& model, Data& data, const double* entries) {
+    ContactSystem& s = data.system;
+    const Eigen::Map<const Eigen::VectorXd> row(entries, s.freedoms);
+    if (s.has_inverse)
+        return row.dot(s.inverse_mass.topLeftCorner(s.freedoms, s.freedoms).lazyProduct(row));
+    const int n = s.tool_freedoms;
+    s.bias = row.head(n);
+    solve(model.tool.linkage, data.linkage, data.factor, s.bias, s.bias);
+    double sum = row.head(n).dot(s.bias);
+    for (int i = n; i < s.freedoms; i += 3)
+        sum += row.segment<3>(i).dot(s.inverse_mass.block<3, 3>(i, i).lazyProduct(row.segment<3>(i)));
+    return sum;
+}
+
+// A step with the forces of its start is (explicit_step.hpp).
+bool is_stable(const Model& model, Data& data, double dt) {
+    ContactSystem& s = data.system;
+    ExplicitStep step(dt);
+    for (int i = 0; i < s.points; ++i) {
+        const PointRow& p = s.point[static_cast<std::size_t>(i)];
+        if (p.gap < 0.0)
+            step.add(p.stiffness, p.damping, mobility_of(model, data, s.normal_rows.row(i).data()));
+    }
+    for (int i = 0; i < s.patches; ++i) {
+        const PatchRow& t = s.row[static_cast<std::size_t>(i)];
+        if (t.patch >= 0 && has_friction(t))
+            step.add(t.stiffness, t.damping, mobility_of(model, data, s.tangent_rows.row(i).data()));
+    }
+    return step.is_stable();
 }
 
 // velocities and forces at the end of the sub-step; false when the solver used its fallback
@@ -156,10 +189,16 @@ struct Solved {
 
 Solved solve(const Model& model, Data& data, const HandInput& hand, double dt, double left) {
     ContactSystem& s = data.system;
-    const Integrator integrator = model.settings.integrator;
+    Integrator integrator = model.settings.integrator;
+    bool gives_way = false;
+    if (integrator == Integrator::semi_implicit && !model.settings.strictly_semi_implicit) {
+        gives_way = !is_stable(model, data, dt);
+        if (gives_way)
+            integrator = Integrator::linearly_implicit;
+    }
     const FreedomVector start = s.velocity;
     HandInput used = at_share(hand);
-    bool settled = solve_step(model, data, used, dt, left, integrator);
+    bool settled = solve_step(model, data, used, dt, left, integrator) && !gives_way;
     Motion motion = end_motion(s, dt, left);
     if (hand.held && hold_back(hand, coupling_force(data, hand, motion), used)) {
         s.velocity = start;

@@ -13,6 +13,7 @@
 #include <cmath>
 
 #include "contact_rules.hpp"
+#include "explicit_step.hpp"
 #include "internal.hpp"
 #include "outcome.hpp"
 #include "primal_solver.hpp"
@@ -157,7 +158,9 @@ class RigidContacts {
         Plain3 right = mass * plain(data_.velocity) + dt_ * weight();
         if (coupling != nullptr)
             coupling->add(used, base, right);
-        if (model_.settings.integrator == Integrator::semi_implicit) {
+        const bool semi_implicit = model_.settings.integrator == Integrator::semi_implicit;
+        gave_way_ = semi_implicit && !model_.settings.strictly_semi_implicit && !is_stable();
+        if (semi_implicit && !gave_way_) {
             start_forces(right);
             v = base.solve(right);
             return true;
@@ -170,6 +173,9 @@ class RigidContacts {
         }
         return false;
     }
+
+    // the forces were those of the end of the step though others were asked for
+    [[nodiscard]] bool gave_way() const { return gave_way_; }
 
     // something that was apart closes with the motion that was found
     [[nodiscard]] bool meets(const Plain3& v) const {
@@ -258,6 +264,25 @@ class RigidContacts {
         if (c.mode == FrictionMode::stick)
             return c.spring + dt_ * c.slip_rate(v);
         return c.mode == FrictionMode::off || c.stiffness <= 0.0 ? 0.0 : -c.force / c.stiffness;
+    }
+
+    // a step with the forces of its start is (explicit_step.hpp)
+    [[nodiscard]] bool is_stable() const {
+        const double along = 1.0 / model_.tool.mass;
+        const double about = 1.0 / model_.tool.inertia;
+        const auto mobility = [&](double turn) { return along + about * (turn * turn); };
+        ExplicitStep step(dt_);
+        for (int i = 0; i < count_; ++i) {
+            const Contact& c = contact_[static_cast<std::size_t>(i)];
+            for (int k = 0; k < c.points; ++k) {
+                const Point& p = c.point[static_cast<std::size_t>(k)];
+                if (p.gap < 0.0)
+                    step.add(p.stiffness, p.damping, mobility(p.turn));
+            }
+            if (c.rough)
+                step.add(c.stiffness, c.damping, mobility(c.slip_turn));
+        }
+        return step.is_stable();
     }
 
     // semi-implicit: forces of the start of the step
@@ -392,6 +417,7 @@ class RigidContacts {
     bool any_open_{false};
     bool slides_{false};
     bool solved_{false};
+    bool gave_way_{false};
     std::array<Contact, k_max_patches> contact_;
 };
 
@@ -423,6 +449,7 @@ bool step_in_contact(const Model& model, Data& data, const HandInput& hand, doub
         return false;
 
     forces.tell(output);
+    output.fell_back = output.fell_back || contacts.gave_way();
     ContactSystem& s = data.system;
     s.points = 0;
     s.patches = 0;

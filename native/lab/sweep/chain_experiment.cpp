@@ -86,6 +86,7 @@ class LocalChainRun final : public Run {
             body.kind = BodyKind::tool;
             body.surface = neutral_surface();
         }
+        model_.settings.strictly_semi_implicit = true; // the method itself is compared
         model_.settings.integrator = setting.scheme == Scheme::semi_implicit ? Integrator::semi_implicit
                                      : setting.scheme == Scheme::exact       ? Integrator::exact
                                                                              : Integrator::linearly_implicit;

@@ -64,6 +64,7 @@ class DiscRun final : public Run {
         tool.shape.piece[0].convex = make_disc(Vec2::Zero(), k_radius);
         LocalModelSettings& s = model_.settings;
         s.integrator = integrator_of(setting.scheme);
+        s.strictly_semi_implicit = true; // the method itself is compared
         s.contact_mode =
             setting.method == Method::penalty ? ContactMode::penalty : ContactMode::penalty_impulse;
         s.collision_method =

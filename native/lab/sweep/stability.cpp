@@ -60,6 +60,7 @@ struct Wall {
         tool.shape.piece[0].id = 1;
         tool.shape.piece[0].convex = make_disc(Vec2::Zero(), k_wall_disc);
         model.settings.integrator = point.integrator;
+        model.settings.strictly_semi_implicit = !point.gives_way;
         model.settings.contact_mode = ContactMode::penalty;
         scene.sequence = 1;
         scene.bodies.body_count = scene.bodies.piece_count = 1;

@@ -13,7 +13,8 @@ namespace haptics {
 /// How stiff contacts are integrated in time.
 enum class Integrator : std::uint8_t {
     /// Forces at the start of the step, positions with the new velocity: cheapest; needs m > (K h^2 + 2 B h)
-    /// / 4 per contact.
+    /// / 4 per contact. A step whose contacts may be beyond that is linearly implicit, and
+    /// StepOutput::fell_back says so.
     semi_implicit,
     /// Forces at the end of the step, linearized: stable for every stiffness and mass; damps fast contact
     /// modes.
@@ -45,6 +46,8 @@ struct Grip {
 
 struct LocalModelSettings {
     Integrator integrator{Integrator::linearly_implicit};
+    /// True: semi_implicit steps where it is unstable too. For comparisons of integrators.
+    bool strictly_semi_implicit{false};
     ContactMode contact_mode{ContactMode::penalty_impulse};
     CollisionMethod collision_method{CollisionMethod::poisson};
     /// Approach slower than this gives no collision impulse, m/s, > 0.

@@ -17,7 +17,9 @@ struct StabilityPoint {
     double stiffness{15000.0};
     double damping{20.0};
     double rate{500.0};
-    double mass{0.3};
+    double mass{0.3}; /// True: semi_implicit gives way where it is unstable, as in a scene; false: the method
+                      /// itself is judged.
+    bool gives_way{false};
 };
 
 struct StabilityFigures {
