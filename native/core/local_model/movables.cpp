@@ -28,6 +28,10 @@
 // takes away again; counted as velocity to come it would leave the body in the environment sinking for good.
 // So the part of the mean push that opposes gravity, times the mean lag, is left out of u.
 //
+// That nearest point hides differences up to the size of u. What nothing but the tool holds needs no such
+// caution: there the environment's velocity goes on to all of v_s + u, and to the fall until now; what it is
+// ahead by for its weight is found in carried.cpp.
+//
 // Shift. A body that is joined to the tool works off the rest of a difference e with a velocity of its own,
 // -e'(t) of the cubic that ends with e = e' = 0, so that what is in its way meets its mass. Moved without
 // asking, it would be a wall of infinite mass, and its contacts would gain K e^2 / 2.
@@ -70,22 +74,32 @@ double size_of(const Vec3& motion, const Body& body) {
 }
 
 // what the environment's velocity, once it has heard all, lacks to the belief of a body that contacts hold
-Twist present_surprise(MovableState& m, const Body& seen, const MovableBelief& echo, const Vec2& gravity,
+Twist present_surprise(MovableState& m, const Body& seen, const MovableBelief& echo, const Neighborhood& n,
                        double now) {
     const MovableBelief& b = m.belief;
+    const Vec2& gravity = n.gravity;
     const Vec3 metric(1.0, 1.0, seen.inertia / seen.mass);
     Twist untold = (b.given - echo.given).cwiseQuotient(seen.mass * metric);
+    Twist ahead = b.velocity - m.shift_velocity + m.pending_velocity - seen.velocity;
 
     // what the tool bears of the weight stays untold, but changes no velocity
     const double lag = std::max(now - echo.time, k_least_lag);
     m.heard = std::min(m.heard + 1, k_lag_memory);
     m.lag += (lag - m.lag) / m.heard;
     m.push += (untold / lag - m.push) / std::min(m.heard, k_push_memory);
-    const double fall = gravity.squaredNorm();
+    const double fall = gravity.norm();
+    if (!m.free)
+        m.lift = m.mean_untold =
+            fall > 0.0 ? std::clamp(-m.push.head<2>().dot(gravity) / (fall * fall), 0.0, 1.0) * m.lag * fall
+                       : 0.0;
+    else if (fall > 0.0)
+        hear(-untold.head<2>().dot(gravity) / fall, n.tick, m);
     if (fall > 0.0)
-        untold.head<2>() += std::clamp(-m.push.head<2>().dot(gravity) / fall, 0.0, 1.0) * m.lag * gravity;
-
-    const Twist ahead = b.velocity - m.shift_velocity + m.pending_velocity - seen.velocity;
+        untold.head<2>() += m.lift / fall * gravity;
+    if (m.free) {
+        ahead -= (now - n.time) * (Twist(gravity.x(), gravity.y(), 0.0) + seen.acceleration);
+        return untold - ahead;
+    }
     const double size = untold.dot(metric.cwiseProduct(untold));
     const double taken =
         size > 0.0 ? std::clamp(ahead.dot(metric.cwiseProduct(untold)) / size, 0.0, 1.0) : 0.0;
@@ -102,10 +116,12 @@ double trust(const Twist& surprise, const Body& body, MovableState& m) {
 
 // the part of a difference of poses that becomes lead
 double lead_part(const MovableState& m, const Body& seen, const MovableBelief& echo, double window,
-                 const Pose& difference) {
+                 double fall, const Pose& difference) {
     const Vec3 gained = (echo.given - m.heard_given).cwiseQuotient(Vec3(seen.mass, seen.mass, seen.inertia));
-    const double speed =
+    double speed =
         std::max({size_of(echo.velocity, seen), size_of(seen.velocity, seen), size_of(gained, seen)});
+    if (m.free)
+        speed = std::max(speed, window * fall);
     const double doubt = speed > 0.0 ? size_of(m.surprise, seen) / speed : 0.0;
     const double most = std::clamp(1.5 - 2.0 * doubt, 0.0, 1.0) * window * speed + k_tolerance;
     return std::min(1.0, most / std::max(size_of(difference, seen), 1e-300));
@@ -123,11 +139,12 @@ void correct(MovableState& m, const Body& seen, const Neighborhood& n, double no
     Twist surprise = seen.velocity - echo->velocity - since;
     Pose difference = seen.pose - echo->pose - (n.time - echo->time) * echo->velocity - moved + m.lead;
     difference.z() = std::remainder(difference.z(), k_turn);
+    watch_answer(seen, *echo, n, m);
     if (m.joined_time >= m.heard_time - n.tick) {
-        surprise = present_surprise(m, seen, *echo, n.gravity, now);
+        surprise = present_surprise(m, seen, *echo, n, now);
         const double part = trust(surprise, seen, m);
         const double window = std::max(n.time - m.heard_time, 0.0) + n.tick;
-        const Pose lead = lead_part(m, seen, *echo, window, difference) * difference;
+        const Pose lead = lead_part(m, seen, *echo, window, n.gravity.norm(), difference) * difference;
         surprise *= part;
         m.lead -= lead;
         difference -= lead;
@@ -167,11 +184,6 @@ void forget_movables(Data& data, std::uint64_t echo_step) {
     data.movable_count = kept;
 }
 
-void add_velocity(MovableState& m, const Twist& velocity) {
-    m.belief.velocity += velocity;
-    m.belief.corrected_velocity += velocity;
-}
-
 void add_pose(MovableState& m, const Pose& pose) {
     m.belief.pose += pose;
     m.belief.corrected_pose += pose;
@@ -202,16 +214,20 @@ void blend(double dt, MovableState& m) {
 }
 
 // takes a part of the lead away
-void draw_back(const Twist& tool, double tick, double dt, MovableState& m) {
+void draw_back(const Data& data, double dt, MovableState& m) {
     if (m.lead.isZero(0.0))
         return;
+    const double tick = data.tick;
     double rate = 1.0 / (k_lead_ticks * tick);
     if (m.row < 0) {
-        const double parting = (m.belief.velocity - tool).head<2>().norm();
+        const double parting = (m.belief.velocity - data.velocity).head<2>().norm();
         const double gentle = 0.5 * parting / std::max(m.lead.head<2>().norm(), 1e-12);
         rate = std::max(rate, std::min(gentle, 1.0 / (k_free_lead_ticks * tick)));
     }
-    const Pose back = std::min(1.0, dt * rate) * m.lead;
+    Pose back = std::min(1.0, dt * rate) * m.lead;
+    const double fall = data.gravity.squaredNorm();
+    if (m.row >= 0 && fall > 0.0 && m.free) // along its weight it is lifted
+        back.head<2>() -= back.head<2>().dot(data.gravity) / fall * data.gravity;
     m.lead -= back;
     add_pose(m, -back);
 }
@@ -253,6 +269,7 @@ void take_movables(const Neighborhood& n, Data& data) {
 }
 
 void move_movables(Data& data, double dt) {
+    lift_carried(data, dt);
     for (std::int32_t i = 0; i < data.movable_count; ++i) {
         MovableState& m = data.movable[static_cast<std::size_t>(i)];
         MovableBelief& s = m.belief;
@@ -263,7 +280,7 @@ void move_movables(Data& data, double dt) {
             m.joined_time = data.time;
         s.corrected_pose += dt * s.corrected_velocity;
         blend(dt, m);
-        draw_back(data.velocity, data.tick, dt, m);
+        draw_back(data, dt, m);
         if (m.body >= 0) {
             data.neighbors.body[static_cast<std::size_t>(m.body)].pose = s.pose;
             data.neighbors.body[static_cast<std::size_t>(m.body)].velocity = s.velocity;

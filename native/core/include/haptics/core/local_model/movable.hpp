@@ -61,6 +61,20 @@ struct MovableState {
     std::int32_t heard{0};
     double lag{0.0};
     Vec3 push{0.0, 0.0, 0.0};
+    /// Velocity in the last snapshot, its time, and `given` of the belief that came back with it.
+    Twist seen_velocity{0.0, 0.0, 0.0};
+    double seen_time{0.0};
+    Wrench seen_given{0.0, 0.0, 0.0};
+    /// Sizes of the last changes of the environment's velocity beyond what it was told and its fall, and of
+    /// these two, m/s: the less odd, the surer that it moves the body by these alone.
+    double odd_change{1.0};
+    double known_change{1.0};
+    /// The environment moves it by these alone, and nothing but the tool and others like it touches it here.
+    bool free{false};
+    /// Velocity along the weight that the tool bears by which the environment is to be ahead once it has
+    /// heard all, and mean of what it has yet to hear, m/s.
+    double lift{0.0};
+    double mean_untold{0.0};
     /// Last step in which `given` changed.
     std::uint64_t given_step{0};
 };
