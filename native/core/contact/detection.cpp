@@ -60,6 +60,10 @@ struct Disc {
     }
 };
 
+/// A hit of one end of an edge with the speed v adds (1 + e) v (a^2 - k^2) / (a^2 + k^2) to that of the
+/// other, a the half length, k the radius of gyration: below 2 v. With room for what forces add.
+constexpr double k_hit_gain = 4.0;
+
 struct Search {
     const DetectionSettings& settings;
     const Memory& memory;
@@ -237,6 +241,25 @@ void collide_neighbors(const Search& search, const BodySet& neighbors, BodyCache
     }
 }
 
+/// How far the ends of a patch may close in a step: what they do now, and what a hit of one gives the other.
+double closing_reach(const BodySet& tool, const BodySet& neighbors, const Patch& patch, double step) {
+    if (patch.point_count < 2)
+        return 0.0;
+    const auto velocity = [&](std::int32_t body, const Vec2& at) -> Vec2 {
+        const std::int32_t neighbor = body - tool.body_count;
+        const Body& b = neighbor < 0 ? tool.body[static_cast<std::size_t>(body)]
+                                     : neighbors.body[static_cast<std::size_t>(neighbor)];
+        if (b.kind == BodyKind::fixed)
+            return Vec2::Zero();
+        return velocity_at(b.velocity, at - b.pose.head<2>());
+    };
+    double closing = 0.0;
+    for (const PatchPoint& p : patch.point)
+        closing = std::max(closing, patch.normal.dot(velocity(patch.body_b, p.position) -
+                                                     velocity(patch.body_a, p.position)));
+    return k_hit_gain * step * closing;
+}
+
 /// Order by ids only.
 void sort(DraftList& drafts) {
     const auto key = [](const Draft& draft) {
@@ -299,7 +322,7 @@ void detect_patches(const BodySet& tool, BodyCache& tool_cache, const BodySet& n
     for (std::int32_t i = 0; i < drafts.count; ++i) {
         Patch& patch = patches.patch[static_cast<std::size_t>(i)];
         patch = drafts[i].patch;
-        share_out(patch, settings.tilt);
+        share_out(patch, settings.tilt, closing_reach(tool, neighbors, patch, settings.step));
     }
 }
 

@@ -11,7 +11,8 @@
 /// wall, and chatter on hard walls; and so would one that never does, pressed in deep: a force F at a lever l
 /// that changes ends within the tilt s is a spring of 3 F l^2 / s to turning, 16 times the wall's for 20 N on
 /// 15000 N/m, and more than 500 Hz bear. With the depth F / K it is one of 3 K l^2 at most, and an end has a
-/// share as long as it overlaps.)
+/// share as long as it overlaps.) An end without a share has no spring, but its hit must not be missed: where
+/// a box tips over onto it within the step, it stays a point of the patch.
 ///
 /// Matter that fades. Of two contacts with presences p >= q, the ends go from those of p alone (q = 0) to
 /// those of both (q = p), and the presence of the patch is min(1, p + q): the pressure of a tool that stands
@@ -161,7 +162,7 @@ void DraftList::add(const Draft& added) {
         (*this)[shallowest] = added;
 }
 
-void share_out(Patch& patch, double tilt) {
+void share_out(Patch& patch, double tilt, double reach) {
     patch.point[0].weight = 1.0;
     if (patch.point_count < 2)
         return;
@@ -169,13 +170,14 @@ void share_out(Patch& patch, double tilt) {
     const double scale = std::max(tilt, -patch.point[low].gap);
     const double rise = (patch.point[1 - low].gap - patch.point[low].gap) / scale;
     const double length = (patch.point[1].position - patch.point[0].position).squaredNorm();
-    if (rise >= 1.0 || length < k_one_point * k_one_point) {
+    const bool awaited = patch.point[1 - low].gap > 0.0 && patch.point[1 - low].gap < reach;
+    if ((rise >= 1.0 && !awaited) || length < k_one_point * k_one_point) {
         patch.point[0] = patch.point[low];
         patch.point[0].weight = 1.0;
         patch.point_count = 1;
         return;
     }
-    const double upper = 0.5 * (1.0 - rise * rise * (3.0 - 2.0 * rise));
+    const double upper = rise < 1.0 ? 0.5 * (1.0 - rise * rise * (3.0 - 2.0 * rise)) : 0.0;
     patch.point[1 - low].weight = upper;
     patch.point[low].weight = 1.0 - upper;
 }

@@ -72,7 +72,8 @@ struct DraftList {
 static_assert(std::is_trivially_destructible_v<Draft>);
 
 /// Sets the shares of the points of a patch: 1, or a half each when level; the upper one's share fades out
-/// over `tilt` (m).
-void share_out(Patch& patch, double tilt);
+/// over `tilt` (m). Without a share it stays when it may close within the coming step, having at most `reach`
+/// (m) to go.
+void share_out(Patch& patch, double tilt, double reach);
 
 } // namespace haptics::contact

@@ -66,9 +66,20 @@ void ExactRun::look(Condition& condition, ChangeKind kind, int index, double sig
 
 void ExactRun::look_at_point(int i, Change& first) {
     const PointRow& p = point(i);
-    if (p.stiffness == 0.0 && p.damping == 0.0)
-        return;
     Condition c;
+    if (p.stiffness == 0.0 && p.damping == 0.0) {
+        if (met_[static_cast<std::size_t>(i)] || !p.was_apart ||
+            model_.settings.contact_mode == ContactMode::penalty)
+            return;
+        // only its hit is awaited
+        c.terms = flow_.terms - 1;
+        for (std::size_t j = 0; j < static_cast<std::size_t>(c.terms); ++j) {
+            c.series[0][j] = flow_.shift[static_cast<std::size_t>(i)][j];
+            c.scale[0] += std::abs(c.series[0][j]);
+        }
+        look(c, ChangeKind::close, i, 0.0, first);
+        return;
+    }
     c.terms = flow_.terms - 1;
     c.scale[0] = force_series(flow_, i, c.series[0]);
     if (p.active) {
@@ -145,6 +156,10 @@ void ExactRun::apply(const Change& change) {
     case ChangeKind::open:
     case ChangeKind::close: {
         PointRow& p = point(change.index);
+        if (p.stiffness == 0.0 && p.damping == 0.0) {
+            met_[static_cast<std::size_t>(change.index)] = true;
+            return;
+        }
         p.active = change.kind == ChangeKind::close;
         PatchRow& t = patch(p.patch);
         fresh_[static_cast<std::size_t>(change.index)] = true;
@@ -177,9 +192,12 @@ void ExactRun::apply(const Change& change) {
 bool ExactRun::stops(const Change& change, const ExactTask& task, double done) const {
     if (change.kind != ChangeKind::close && change.kind != ChangeKind::open)
         return false;
-    if (task.stop == ExactStop::changes)
-        return done > task.too_early;
-    if (task.stop == ExactStop::never || change.kind == ChangeKind::open)
+    if (task.stop == ExactStop::never)
+        return false;
+    if (task.stop == ExactStop::changes && done > task.too_early)
+        return true;
+    // a hit, however soon
+    if (change.kind == ChangeKind::open || model_.settings.contact_mode == ContactMode::penalty)
         return false;
     const FlowRow& r = row(change.index);
     return may_collide(s_, point(change.index)) &&

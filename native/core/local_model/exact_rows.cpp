@@ -70,6 +70,16 @@ int nearest(const Points& points, const PatchRow& t, const PatchList& patches, c
     return best;
 }
 
+// between the ends of a patch, 0 of one point
+template <typename Points>
+double length_of(const PatchList& patches, const PatchRow& t, const Points& points) {
+    if (t.point_count < 2)
+        return 0.0;
+    return (place_of(patches, t, points[index(t.first_point)]).position -
+            place_of(patches, t, points[index(t.first_point + 1)]).position)
+        .norm();
+}
+
 double overlap_energy(double stiffness, double gap) {
     const double depth = std::min(gap, 0.0);
     return 0.5 * stiffness * depth * depth;
@@ -183,10 +193,20 @@ bool carry_over(const StretchRows& old, Data& data) {
         for (int q = before.first_point; q < before.first_point + before.point_count; ++q) {
             const PointRow& from = old.point[index(q)];
             double distance = 0.0;
-            PointRow& to = s.point[index(
-                nearest(s.point, t, data.patches, place_of(data.previous, before, from).position, distance))];
-            to.impulse += from.impulse;
-            to.was_apart = to.was_apart && from.was_apart;
+            s.point[index(nearest(s.point, t, data.patches, place_of(data.previous, before, from).position,
+                                  distance))]
+                .impulse += from.impulse;
+        }
+        // what has just closed is awaited still; an end that comes into the list is not the other one
+        const double length =
+            std::max(length_of(data.patches, t, s.point), length_of(data.previous, before, old.point));
+        for (int q = t.first_point; q < t.first_point + t.point_count; ++q) {
+            PointRow& to = s.point[index(q)];
+            double distance = 0.0;
+            const int at =
+                nearest(old.point, before, data.previous, place_of(data.patches, t, to).position, distance);
+            if (length == 0.0 || distance < 0.5 * length)
+                to.was_apart = old.point[index(at)].was_apart;
         }
     }
     for (int i = 0; i < old.patches; ++i) {
@@ -265,7 +285,8 @@ double unseen_energy(const Model& model, Data& data, const ExactMotion& motion) 
             double distance = 0.0;
             const int q =
                 row < 0 ? -1 : nearest(s.point, s.row[index(row)], data.previous, point.position, distance);
-            if (q >= 0 && distance <= rim_motion(data, point.position, motion.moved)) {
+            if (q >= 0 && s.point[index(q)].stiffness > 0.0 &&
+                distance <= rim_motion(data, point.position, motion.moved)) {
                 const PointRow& p = s.point[index(q)];
                 energy +=
                     std::abs(overlap_energy(p.stiffness, point.gap) - overlap_energy(p.stiffness, p.gap));

@@ -80,6 +80,8 @@ class ExactRun {
     std::array<double, k_max_exact_patches> tangent_impulse_;
     // rows whose mode has changed at the present instant
     std::array<bool, k_flow_rows> fresh_;
+    // ends of patches without a spring that have closed, see share_out
+    std::array<bool, k_max_exact_points> met_{};
 };
 
 } // namespace haptics::local
