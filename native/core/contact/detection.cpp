@@ -242,9 +242,10 @@ void collide_neighbors(const Search& search, const BodySet& neighbors, BodyCache
 }
 
 /// How far the ends of a patch may close in a step: what they do now, and what a hit of one gives the other.
-double closing_reach(const BodySet& tool, const BodySet& neighbors, const Patch& patch, double step) {
-    if (patch.point_count < 2)
-        return 0.0;
+double closing_reach(const BodySet& tool, const BodySet& neighbors, const Patch& patch,
+                     const DetectionSettings& settings) {
+    if (patch.point_count < 2 || std::abs(patch.point[0].gap - patch.point[1].gap) < settings.tilt)
+        return 0.0; // both have a share
     const auto velocity = [&](std::int32_t body, const Vec2& at) -> Vec2 {
         const std::int32_t neighbor = body - tool.body_count;
         const Body& b = neighbor < 0 ? tool.body[static_cast<std::size_t>(body)]
@@ -257,7 +258,7 @@ double closing_reach(const BodySet& tool, const BodySet& neighbors, const Patch&
     for (const PatchPoint& p : patch.point)
         closing = std::max(closing, patch.normal.dot(velocity(patch.body_b, p.position) -
                                                      velocity(patch.body_a, p.position)));
-    return k_hit_gain * step * closing;
+    return k_hit_gain * settings.step * closing;
 }
 
 /// Order by ids only.
@@ -322,7 +323,7 @@ void detect_patches(const BodySet& tool, BodyCache& tool_cache, const BodySet& n
     for (std::int32_t i = 0; i < drafts.count; ++i) {
         Patch& patch = patches.patch[static_cast<std::size_t>(i)];
         patch = drafts[i].patch;
-        share_out(patch, settings.tilt, closing_reach(tool, neighbors, patch, settings.step));
+        share_out(patch, settings.tilt, closing_reach(tool, neighbors, patch, settings));
     }
 }
 
