@@ -57,6 +57,11 @@ endif()
 if(HAPTICS_SANITIZE)
     target_compile_options(haptics_options INTERFACE -fsanitize=${HAPTICS_SANITIZE} -fno-sanitize-recover=all)
     target_link_options(haptics_options INTERFACE -fsanitize=${HAPTICS_SANITIZE})
+    if(HAPTICS_SANITIZE MATCHES "address.*undefined")
+        # each of these is a question at every access, half of the compile time, and what it looks for the address checks or
+        # the processor stop too
+        target_compile_options(haptics_options INTERFACE -fno-sanitize=alignment,null,object-size,pointer-overflow,vptr)
+    endif()
 endif()
 
 # C is for what runs without an operating system (firmware/) and for what has to stand between a program and the C library

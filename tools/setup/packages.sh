@@ -19,12 +19,13 @@ build_packages() {
     [[ -s $1/packages.txt ]] || die "${wanted_packages[*]}: installed here by apt already, but too old or broken. $packages_help"
 }
 
-# compiles FILE: a C++20 compiler that also links against this system's standard library
+# compiles FILE: a C++20 compiler that also links against this system's standard library, and has its address checks
 compiles() {
     local scratch status=0
     scratch=$(mktemp -d)
     printf '#include <iostream>\n#include <span>\nint main() { std::cout << std::span<int>{}.size(); }\n' >"$scratch/a.cpp"
-    "$1" -std=c++20 "$scratch/a.cpp" -o "$scratch/a" >"$scratch/log" 2>&1 && "$scratch/a" >/dev/null || status=1
+    "$1" -std=c++20 -fsanitize=address,undefined "$scratch/a.cpp" -o "$scratch/a" >"$scratch/log" 2>&1 &&
+        "$scratch/a" >/dev/null || status=1
     rm -rf "$scratch"
     return "$status"
 }
@@ -45,7 +46,8 @@ build_clang() {
     local partial=$1 final=$2 package folder help="Install clang $CLANG_MINIMUM or newer."
     apt_require "clang" "$help"
     for package in $CLANG_PACKAGES; do
-        apt_unpack "$partial" own "$package" && break
+        # shellcheck disable=SC2086
+        apt_unpack "$partial" own ${package//+/ } && break
         find "$partial" -mindepth 1 -delete
     done
     folder=$(find "$partial/usr/lib" -path '*/llvm-*/bin/clang++' -printf '%h\n' 2>/dev/null | head -n 1)
