@@ -13,6 +13,7 @@
 
 #include <algorithm>
 
+#include "exact_parts.hpp"
 #include "fading.hpp"
 #include "internal.hpp"
 
@@ -86,6 +87,28 @@ void make_step(const Model& model, Data& data, const HandInput& hand, double dt,
     local::finish(model, data, output);
 }
 
+// A step with the exact integrator: where a linkage turns fast at a contact it is made of parts.
+void make_exact_step(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output) {
+    constexpr int k_most_parts = 64;
+    StepFigures sum;
+    double left = dt;
+    double before = dt;
+    for (int part = 1; left > 0.0; ++part) {
+        local::begin_tool_step(model, data);
+        find_contacts(model, data, left);
+        const double next = part < k_most_parts ? local::part_of_step(model, data, left) : left;
+        const double rest = next < left ? left - next : 0.0;
+        data.half_step *= next / before;
+        static_cast<StepFigures&>(output) = StepFigures{};
+        make_step(model, data, local::hand_of_part(hand, rest), next, Contacts::kept, output);
+        local::add_part(output, next / dt, sum);
+        before = next;
+        left = rest;
+    }
+    data.half_step *= dt / before;
+    static_cast<StepFigures&>(output) = sum;
+}
+
 void guarded_step(const Model& model, Data& data, const HandInput& hand, double dt, Contacts contacts,
                   StepOutput& output) {
     output.clear();
@@ -93,7 +116,11 @@ void guarded_step(const Model& model, Data& data, const HandInput& hand, double 
     LinkageVector coordinates; // assigned: a copy would take all that it has room for
     if (model.tool.articulated)
         coordinates = data.linkage.position;
-    make_step(model, data, hand, dt, contacts, output);
+    const bool exact = model.settings.integrator == Integrator::exact;
+    if (exact && model.tool.articulated && contacts == Contacts::sought)
+        make_exact_step(model, data, hand, dt, output);
+    else
+        make_step(model, data, hand, dt, contacts, output);
     if (local::ran_away(model, data)) {
         if (!model.tool.articulated)
             coordinates = start;
