@@ -12,6 +12,7 @@
 #include <haptics/core/contact/detection.hpp>
 
 #include <algorithm>
+#include <utility>
 
 #include "exact_parts.hpp"
 #include "fading.hpp"
@@ -106,7 +107,7 @@ void make_exact_step(const Model& model, Data& data, const HandInput& hand, doub
         left = rest;
     }
     data.half_step *= dt / before;
-    static_cast<StepFigures&>(output) = sum;
+    static_cast<StepFigures&>(output) = std::move(sum);
 }
 
 void guarded_step(const Model& model, Data& data, const HandInput& hand, double dt, Contacts contacts,
