@@ -161,8 +161,15 @@ ExtremeResult hard_wall_held(double stiffness, double damping) {
     scene->bodies.body[0].surface.stiffness = stiffness;
     scene->bodies.body[0].surface.damping = damping;
     loop.session->take(*scene);
-    loop.go(4.0);
-    return loop.result(std::abs(loop.session->report().force.y() / 2.0 - 1.0), loop.faults());
+    loop.go(3.0);
+    // a count of the encoder to and fro is 0.3 N in the damper: one instant says nothing of a steady force
+    double sum = 0.0;
+    constexpr int k_steps = 1000;
+    for (int i = 0; i < k_steps; ++i) {
+        loop.go(loop.session->settings().step);
+        sum += loop.session->report().force.y();
+    }
+    return loop.result(std::abs(sum / k_steps / 2.0 - 1.0), loop.faults());
 }
 
 // the floor jumps 30 mm up into the tool and back, six times a second
@@ -332,7 +339,7 @@ void add_device_cases(std::vector<ExtremeCase>& cases) {
             if (stiffness > 1e6 || damping > 1e6)
                 add("2 N on a wall of " + std::string(stiffness > 1e6 ? "1e12" : "15000") + " N/m and " +
                         (damping > 1e6 ? "1e12" : "20") + " N s/m through the device",
-                    "relative error of the force felt", 0.02,
+                    "relative error of the mean force felt", 0.02,
                     [=] { return hard_wall_held(stiffness, damping); });
     add("a fixed floor teleports 30 mm into a held tool and back",
         "fastest handle, m/s (the gate faults at 2)", 2.0, [] { return teleports(BodyKind::fixed); });
