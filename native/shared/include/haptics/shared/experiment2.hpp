@@ -26,6 +26,11 @@ struct Experiment2Options {
     double hidden_inertia{0.9};
     /// False: the hand force is measured, the reading exact and nothing is late.
     bool observer{false};
+    /// True mass of handle and hand, kg; their inertias are a thousandth of the first, and, kg m^2, the
+    /// other.
+    double device_mass{0.3};
+    double hand_mass{0.15};
+    double hand_inertia{1e-4};
     /// Mass that the controller assumes over the true one, and the error its design has to bear.
     double mass_ratio{1.0};
     double mass_error{0.25};
@@ -34,6 +39,7 @@ struct Experiment2Options {
     double noise{0.05};
     /// N s/m and, times 1e-3, N m s/rad.
     double friction{0.0};
+    bool passivity{false};
     /// A wall beside links 1 and 2 and an object before link 3.
     bool obstacles{false};
 };
@@ -59,7 +65,7 @@ inline Model experiment2_linkage() {
     return model;
 }
 
-/// The hand: 0.15 kg, 1000 N/m; its wish rests for a second, then swings.
+/// The hand: 1000 N/m; its wish rests for a second, then swings.
 inline SimulatedHandOptions experiment2_hand(const Experiment2Options& o) {
     const Model model = experiment2_linkage();
     const LinkageVector start = experiment2_start();
@@ -82,6 +88,8 @@ inline SimulatedHandOptions experiment2_hand(const Experiment2Options& o) {
         path.push_back({1.0 + t, at(amplitude * u * u * (3.0 - 2.0 * u) * std::sin(w * t))});
     }
     SimulatedHandOptions hand = path_hand(std::move(path));
+    hand.mass = o.hand_mass;
+    hand.inertia = o.hand_inertia;
     hand.rotation_stiffness = 2.0;
     hand.max_force = 60.0;
     hand.max_torque = 2.0;
@@ -106,16 +114,17 @@ class IdealLinkage {
     explicit IdealLinkage(const Experiment2Options& o)
         : model_(experiment2_linkage())
         , options_(experiment2_hand(o))
-        , hand_(options_, options_.mass + k_device_mass, options_.inertia + k_device_inertia, Pose::Zero()) {
+        // its damping is critical with the device
+        , hand_(options_, options_.mass + o.device_mass, options_.inertia + k_lever * o.device_mass,
+                Pose::Zero()) {
         reset(model_.tool.linkage, data_);
         data_.position = experiment2_start();
         data_.velocity.setZero(3);
         update_kinematics(model_.tool.linkage, data_);
         from_ = link_center_pose(model_.tool.linkage, data_, 2);
     }
-    /// Of the device that the hand's damping is critical with.
-    static constexpr double k_device_mass = 0.3;
-    static constexpr double k_device_inertia = 3e-4;
+    /// Inertia of the device over its mass, m^2.
+    static constexpr double k_lever = 1e-3;
 
     void advance(double dt) {
         const int parts = std::max(1, static_cast<int>(std::ceil(dt / 20e-6 - 1e-6)));
@@ -168,8 +177,8 @@ class IdealLinkage {
 struct Experiment2 {
     explicit Experiment2(const Experiment2Options& o) {
         SimulatedPantographOptions d;
-        d.mass = IdealLinkage::k_device_mass;
-        d.inertia = IdealLinkage::k_device_inertia;
+        d.mass = o.device_mass;
+        d.inertia = IdealLinkage::k_lever * o.device_mass;
         d.viscous_friction = o.friction;
         d.rotation_viscous_friction = 1e-3 * o.friction;
         d.encoder_model = o.observer ? EncoderModel::handle : EncoderModel::exact;
@@ -188,6 +197,7 @@ struct Experiment2 {
         s.coupling = o.coupling;
         s.hand_force = o.hand_force;
         s.hidden_inertia = o.hidden_inertia;
+        s.passivity_control = o.passivity;
         const double error = o.observer ? 0.5 * o.encoder : 0.0;
         s.reading_error = Vec3(error, error, 10.0 * error);
         s.observer.enabled = o.observer;
