@@ -163,7 +163,7 @@ var coupling_rotation_damping: float = 0.0
 ## Part of the device's inertia that is kept from the hand in free motion, 0 to 0.95. Needs
 ## [constant FOUR_CHANNEL], and [member observer] or a device that measures the hand's force.
 @export_range(0.0, 0.95, 0.01) var hidden_inertia: float = 0.0
-## Damps the handle while more energy came out of the loop than went into it.
+## Damps the handle while the loop gave more energy than it got. On anyway with hidden inertia.
 @export var passivity_control: bool = false
 
 @export_group("Gravity")

@@ -20,6 +20,18 @@
 // D^-1 tau - M_d^-1 F_h) with S = (J_h D^-1 J_h^T + M_d^-1)^-1. The device is fed forward S J_h D^-1 tau, the
 // proxy S J_h D^-1 J_h^T F_h (note 1 - S M_d^-1 = S J_h D^-1 J_h^T). At rest the sum of both equations says
 // (1 + S J_h D^-1 J_h^T)(F_h + F_env) = 0: a steady push gives the push back, whatever the masses.
+//
+// Energy of the force channels. F_h fed to the proxy with the weight A = S P (P = J_h D^-1 J_h^T) and tau to
+// the device with A do the work v.A (F_h + tau) beyond that of the coupling, which gives to one what it takes
+// from the other. Device M_d a_d = F_h - c + A tau and proxy P^-1 a_p = tau + c + A F_h together are M_d a_d
+// + P^-1 a_p = (1 + A)(F_h + tau), so that the work is v.A (1 + A)^-1 (M_d a_d + P^-1 a_p): it moves the
+// inertia A (1
+// + A)^-1 M_d of the device and A (1 + A)^-1 P^-1 of the proxy, which the hand does not feel, and comes back
+// when they stop. With X = M_d P that is X (1 + 2 X)^-1 M_d and (1 + 2 X)^-1 M_d: P is not inverted. When
+// only the share s of the forces takes effect, A becomes s A, and 1 + 2 X becomes (1 + (1 + s) X) / s.
+// Likewise beside acceleration feed-forward (shared_motion.cpp), whose u + L = (M_d - M') a* moves the pair
+// by a*, with (M_d + P^-1) a* = M_d a_d + P^-1 a_p. Where the hand's force is measured, friction phi of the
+// device, M_d a_d = F_h - c + A tau - phi, is passed on as well: v.A (1 + A)^-1 phi.
 
 #include <haptics/core/control/coupling.hpp>
 
@@ -56,6 +68,18 @@ Mat3 combined_mass(const Mat3& grip_mobility, const Mat3& device_mass) {
     // S = M (1 + Lambda^-1 M)^-1: no inverse of a singular matrix is taken
     const Mat3 one_plus = Mat3::Identity() + grip_mobility * device_mass;
     return device_mass * one_plus.inverse();
+}
+
+LentMass lent_mass(const Mat3& grip_mobility, const Mat3& device_mass, double share) {
+    const Mat3 ratio = device_mass * grip_mobility;
+    const Mat3 part = share * (Mat3::Identity() + (1.0 + share) * ratio).inverse();
+    return {part * ratio * device_mass, part * device_mass, part * ratio};
+}
+
+LentMass lent_mass_hidden(const Mat3& grip_mobility, const Mat3& device_mass, const Mat3& hidden) {
+    const Mat3 ratio = grip_mobility * device_mass;
+    const Mat3 part = hidden * (Mat3::Identity() + ratio).inverse();
+    return {part * ratio, part, part * grip_mobility};
 }
 
 Mat3 truncated_mass(const Mat3& grip_mobility, const Mat3& device_mass) {

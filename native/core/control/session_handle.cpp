@@ -28,6 +28,8 @@ Fault without(Fault set, Fault bits) {
 
 // a handle is moved on by its velocity for so long, s; beyond that the velocity says too little
 constexpr double k_most_ahead = 0.003;
+// least share of the gate with which force channels begin
+constexpr double k_faint = 0.05;
 
 } // namespace
 
@@ -69,8 +71,7 @@ void Session::read_device() {
     follow_handle();
     if (elsewhere) {
         // the coupling starts anew, without tension
-        grasp_ = 0.0;
-        grasping_ = 0.0;
+        grasp_.set(0.0);
         freeze_offset();
     }
     hand_force_.setZero();
@@ -78,6 +79,17 @@ void Session::read_device() {
         hand_force_ = settings_.mapping.wrench_to_scene(reading_.hand_force);
     else if (observer_)
         hand_force_ = settings_.mapping.wrench_to_scene(observer_->hand_force());
+}
+
+// The hand carries what the gate lets through, the tool is to feel the whole.
+Wrench Session::whole_hand_force() const {
+    return hand_force_ / std::max(gate_fade_, k_faint);
+}
+
+// where the gate leaves little of a force there is too little to tell the hand's part from
+double Session::channels() const {
+    const double u = std::clamp((gate_fade_ - k_faint) / k_faint, 0.0, 1.0);
+    return channels_.share() * u * u * (3.0 - 2.0 * u);
 }
 
 void Session::follow_handle() {
@@ -120,11 +132,20 @@ Fault Session::device_faults() const {
 }
 
 void Session::hold(bool held) {
-    if (held && grasp_ == 0.0)
-        freeze_offset();
     held_ = held;
     regrab_ = false;
     impulses_.drop();
+    if (held && grasp_.share() == 0.0)
+        take_hold();
+}
+
+void Session::take_hold() {
+    freeze_offset();
+    grasp_.set(1.0);
+    channels_.set(0.0);
+    // nobody feels anything before the gate is armed
+    taking_ = gate_.armed() ? 2 : 0;
+    firmness_ = taking_ > 0 ? 0.0 : 1.0;
 }
 
 void Session::freeze_offset() {
@@ -133,14 +154,53 @@ void Session::freeze_offset() {
 }
 
 void Session::grasp() {
-    const double change = settings_.step / k_grasp_time;
-    grasping_ = std::clamp(grasping_ + (held_ ? change : -change), 0.0, 1.0);
-    grasp_ = grasping_ * grasping_ * (3.0 - 2.0 * grasping_); // no kink at either end
-    if (regrab_ && grasp_ == 0.0) {
+    const double h = settings_.step;
+    const double force = output_.full_coupling.head<2>().norm();
+    grasp_.advance(held_, 0.0, h);
+    channels_.advance(held_, hand_force_.head<2>().norm() + force, h);
+    if (regrab_ && grasp_.share() == 0.0) {
         haptics::grab(*model_, *data_, next_grip_);
         mobility_ = grip_mobility(*model_, *data_);
         hold(true);
+    } else if (held_ && grasp_.share() == 0.0) {
+        take_hold();
+    } else if (firmness_ < 1.0) {
+        grow_firm();
     }
+    last_grip_ = grip_pose(data_->grip, data_->pose);
+}
+
+// Taking hold of what moves past the hand at v. A spring frozen at once would be stretched by what it cannot
+// stop, and throw the tool back. So a damper alone catches it, b = g B, with g growing by e in a time T. The
+// tool's momentum p goes as p' = -b p / m, and the force F = b v as F' = F (1/T - b/m): with x = b T / m that
+// is F' = p_0/T^2 x (1 - x) exp(-x), at most 0.31 p_0 / T^2, at x = 2.6. T is chosen so that it is
+// Fade::k_largest_step a step, and g begins where B v is half of that. Once g is 1 the tool moves with the
+// hand, and the spring begins without tension.
+void Session::grow_firm() {
+    constexpr double k_steepest = 0.31 / 0.7; // steps are no flow
+    constexpr double k_arm = 0.03;            // m, of torques
+    constexpr double k_slow = 1e-4;           // m/s
+    const double h = settings_.step;
+    if (taking_ > 1) {
+        --taking_;
+    } else if (taking_ == 1) {
+        taking_ = 0;
+        const Pose grip = grip_pose(data_->grip, data_->pose);
+        Twist past = -(grip - last_grip_) / h;
+        if (!parked_)
+            past += handle_velocity_;
+        past.z() += placement_.turn().rate();
+        const Wrench momentum = combined_mass(mobility_, device_mass_) * past;
+        const double p = std::max(momentum.head<2>().norm(), std::abs(momentum.z()) / k_arm);
+        firming_time_ = std::max(5.0 * h, std::sqrt(k_steepest * p * h / Fade::k_largest_step));
+        const double force = std::max(gains_.damping.head<2>().maxCoeff() * past.head<2>().norm(),
+                                      gains_.damping.z() * std::abs(past.z()) / k_arm);
+        const double least = gains_.damping.head<2>().maxCoeff() * k_slow;
+        firmness_ = std::min(1.0, 0.5 * Fade::k_largest_step / std::max({force, least, 1e-12}));
+    } else {
+        firmness_ = std::min(1.0, firmness_ * std::exp(h / firming_time_));
+    }
+    freeze_offset();
 }
 
 // Clutch, mapping and turn (placement.hpp). Parked, the tool is held where it was by the same coupling, of

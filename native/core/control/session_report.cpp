@@ -17,7 +17,7 @@ void Session::write_report(const GateOutput& gate, const Wrench& command) {
     r.proxy = data_->pose;
     r.grip = grip_pose(data_->grip, data_->pose);
     r.velocity = data_->velocity;
-    r.hand_share = grasp_ * placement_.share();
+    r.hand_share = grasp_.share() * placement_.share();
     r.force = map.wrench_to_scene(gate.applied);
     r.compensation = map.wrench_to_scene(care_.applied());
     r.command = map.wrench_to_scene(command);

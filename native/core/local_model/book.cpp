@@ -65,8 +65,7 @@ Wrench coupling_force(const Data& data, const HandInput& hand, const Motion& mot
     return force;
 }
 
-void book(const Model& model, Data& data, const Wrench& hand_force, const Motion& motion, double share,
-          StepOutput& output) {
+void book(const Model& model, Data& data, const Motion& motion, double share, StepOutput& output) {
     ContactSystem& s = data.system;
     const double dt = motion.dt;
     const int n = s.tool_freedoms;
@@ -116,8 +115,7 @@ void book(const Model& model, Data& data, const Wrench& hand_force, const Motion
             const Vec3 spring = joint_spring(model, data, i);
             s.tool_force(i) -= spring.y() * (spring.x() + motion.stretch(i)) + spring.z() * motion.rate(i);
         }
-    output.source_work +=
-        dt * (s.tool_weight.dot(motion.rate.head(n)) + hand_force.dot(s.grip * motion.rate.head(n)));
+    output.source_work += dt * s.tool_weight.dot(motion.rate.head(n));
     output.contact += share * contact;
     output.environment += share * contact;
     if (!model.tool.articulated) {

@@ -172,7 +172,7 @@ void go_on(const Model& model, Data& data, const HandInput& hand, const ExactTas
     const Motion mean = mean_motion(motion, task.left);
     if (hand.held)
         book_coupling(data, hand, used, mean, share, output);
-    book(model, data, hand.held ? hand.force : Wrench(Wrench::Zero()), mean, share, output);
+    book(model, data, mean, share, output);
     add_impulses(s, motion.done);
     if (model.tool.articulated) {
         // all work but that of Coriolis terms, for the energy budget

@@ -36,7 +36,6 @@ void step_freely(const Model& model, Data& data, const HandInput& hand, double d
 
     const Plain3 momentum = mass * start + dt * weight;
     Plain3 v{momentum.x / mass.x, momentum.y / mass.y, momentum.z / mass.z};
-    Plain3 force{0.0, 0.0, 0.0};
     if (hand.held) {
         const RigidCoupling coupling(grip, at, hand.target, hand, dt);
         const auto end = [&](const UsedCoupling& used, Plain3& end_velocity) {
@@ -49,9 +48,8 @@ void step_freely(const Model& model, Data& data, const HandInput& hand, double d
         RigidCoupling::Forces forces;
         coupling.solve(end, v, forces);
         forces.tell(output);
-        force = plain(hand.force);
     }
-    output.source_work = dt * (weight.dot(v) + force.dot(grip.velocity(v)));
+    output.source_work = dt * weight.dot(v);
 
     data.velocity = v.vector();
     data.pose = {x + dt * v.x, y + dt * v.y, data.pose.z() + dt * v.z};

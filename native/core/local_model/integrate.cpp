@@ -218,7 +218,7 @@ void move_on(const Model& model, Data& data, const HandInput& hand, const Solved
         s.force_work += dt * applied.dot(s.grip * s.velocity.head(s.tool_freedoms));
     }
     output.fell_back = output.fell_back || !solved.settled;
-    book(model, data, hand.held ? hand.force : Wrench(Wrench::Zero()), motion, share, output);
+    book(model, data, motion, share, output);
     const int n = s.tool_freedoms;
     s.force_work += dt * (s.tool_force - s.external.head(n) + s.tool_weight).dot(s.velocity.head(n));
     move_anchors(s, dt);
@@ -259,7 +259,7 @@ void explicit_forces(const Model& model, Data& data, double dt, StepOutput& outp
     const FreedomVector start = data.system.velocity;
     solve_step(model, data, HandInput{}, dt, 0.0, Integrator::semi_implicit);
     data.system.velocity = start;
-    book(model, data, Wrench::Zero(), end_motion(data.system, dt, 0.0), 1.0, output);
+    book(model, data, end_motion(data.system, dt, 0.0), 1.0, output);
     move_anchors(data.system, dt);
 }
 

@@ -42,8 +42,7 @@ Wrench coupling_force(const Data& data, const HandInput& hand, const Motion& mot
 Wrench book_coupling(const Data& data, const HandInput& hand, const HandInput& used, const Motion& motion,
                      double share, StepOutput& output);
 // Adds contact forces, impulses on movables and work of the sub-step to the books, and forms `tool_force`.
-void book(const Model& model, Data& data, const Wrench& hand_force, const Motion& motion, double share,
-          StepOutput& output);
+void book(const Model& model, Data& data, const Motion& motion, double share, StepOutput& output);
 // Counts what the tool's push, an impulse for each point and each patch, leaves in the movables (push.cpp).
 void tell_push(Data& data, const double* normal, const double* tangent);
 // Velocities into Data, poses on by `moved`, everything else by `dt`.

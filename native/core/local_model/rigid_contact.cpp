@@ -431,8 +431,8 @@ bool step_in_contact(const Model& model, Data& data, const HandInput& hand, doub
     const Vec2 lever = data.grip.point.isZero(0.0) ? data.grip.point : rotate(data.pose.z(), data.grip.point);
     const RigidGrip grip{lever.x(), lever.y(), data.grip.pose};
     Plain3 v{0.0, 0.0, 0.0};
-    Plain3 force{0.0, 0.0, 0.0};
-    RigidCoupling::Forces forces{force, force};
+    const Plain3 none{0.0, 0.0, 0.0};
+    RigidCoupling::Forces forces{none, none};
     if (hand.held) {
         const Plain3 at{data.pose.x() + grip.x, data.pose.y() + grip.y, data.pose.z()};
         const RigidCoupling coupling(grip, at, hand.target, hand, dt);
@@ -441,8 +441,7 @@ bool step_in_contact(const Model& model, Data& data, const HandInput& hand, doub
         };
         if (!coupling.solve(end, v, forces))
             return false;
-        force = plain(hand.force);
-    } else if (!contacts.solve(nullptr, {0.0, force}, v)) {
+    } else if (!contacts.solve(nullptr, {0.0, none}, v)) {
         return false;
     }
     if (contacts.meets(v))
@@ -466,7 +465,7 @@ bool step_in_contact(const Model& model, Data& data, const HandInput& hand, doub
     move_neighbors(data, dt);
     const auto [sum, wall_work, energy] = contacts.tell(v, data, output);
     output.stored_energy = energy + rigid_energy(tool, v);
-    output.source_work = wall_work + dt * (weight.dot(v) + force.dot(grip.velocity(v)));
+    output.source_work = wall_work + dt * weight.dot(v);
     output.contact = {sum.x, sum.y, sum.z - (grip.x * sum.y - grip.y * sum.x)};
     output.environment =
         output.contact + Wrench(weight.x, weight.y, -(grip.x * weight.y - grip.y * weight.x));

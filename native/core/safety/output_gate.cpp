@@ -75,6 +75,7 @@ OutputGate::OutputGate(const SafetyLimits& limits, const PantographKinematics& k
 void OutputGate::shut() {
     applied_.setZero();
     ramp_ = 0.0;
+    place_fade_ = 1.0;
     energy_ = 0.0;
 }
 
@@ -205,7 +206,7 @@ GateOutput OutputGate::apply(const Wrench& command, const Pose& pose, const Twis
     mark(ramp_ < 1.0, GateFlag::ramping);
     mark(open_ < 1.0, GateFlag::paused);
     double fade = ramp_ * open_;
-    out.fade = fade;
+    out.ramp = fade;
 
     // near the edge and near singular poses
     if (kinematics_) {
@@ -218,10 +219,12 @@ GateOutput OutputGate::apply(const Wrench& command, const Pose& pose, const Twis
             edge = 0.0;
         const double half = 0.5 * limits_.singularity_fade;
         const double singular = std::clamp((workspace_.singularity - half) / half, 0.0, 1.0);
-        mark(edge < 1.0, GateFlag::workspace_faded);
+        place_fade_ = std::min(edge * singular, place_fade_ + most_return_);
         mark(singular < 1.0, GateFlag::singularity_faded);
-        fade *= edge * singular;
+        mark(edge < 1.0 || (place_fade_ < 1.0 && singular >= 1.0), GateFlag::workspace_faded);
+        fade *= place_fade_;
     }
+    out.fade = fade;
 
     // force clamp
     Wrench wanted = command.cwiseMax(-k_absurd).cwiseMin(k_absurd) * fade;

@@ -219,8 +219,8 @@ TEST_SUITE("hand force") {
             tool.session->step();
         Wrench last = tool.session->report().force;
         for (int k = 0; k < 6; ++k) {
-            // fading out over 0.1 s changes a force by at most 1.5 % a step, the hand moves on meanwhile, and
-            // fading in catches a link that may swing
+            // fading out over 0.1 s changes a force by at most 1.5 % a step, and the hand that moves on meets
+            // what the linkage cannot do
             const double allowed = std::max(0.15, 0.05 * last.head<2>().norm());
             double largest = 0.0;
             tool.session->grab(Grip{k % 3, Vec2(0.02 * (k % 2), 0.0), k % 2 == 0});
@@ -236,6 +236,45 @@ TEST_SUITE("hand force") {
             CHECK(largest <= allowed);
         }
         CHECK(tool.session->report().faults == Fault::none);
+    }
+
+    TEST_CASE(
+        "a hand at rest that takes hold of a swinging link catches it: the force starts at zero and changes "
+        "by at most 0.05 N a step") {
+        for (const bool four : {false, true})
+            for (const double speed : {0.5, 2.0, 5.0})
+                for (const double rate_hz : {500.0, 1000.0}) {
+                    CAPTURE(four);
+                    CAPTURE(speed);
+                    CAPTURE(rate_hz);
+                    Model model = linkage_tool(shared::door());
+                    model.tool.grip = Grip{0, Vec2(0.05, 0.0), false};
+                    SessionSettings settings;
+                    settings.step = 1.0 / rate_hz;
+                    settings.coupling = four ? Coupling::four_channel : Coupling::virtual_coupling;
+                    settings.hold_at_start = false;
+                    HeldTool tool(model, coordinates({0.4}), still_hand(), settings);
+                    Session& session = *tool.session;
+                    session.take(*shared::empty_world());
+                    const auto run = [&](double seconds, double& largest) {
+                        for (int i = 0; i < static_cast<int>(seconds * rate_hz); ++i) {
+                            const Wrench last = session.report().force;
+                            session.step();
+                            largest = std::max(largest, (session.report().force - last).head<2>().norm());
+                        }
+                    };
+                    double before = 0.0;
+                    run(0.8, before);
+                    CHECK(before == 0.0);
+                    session.set_rates(LinkageVector(coordinates({speed})));
+                    session.hold(true);
+                    double largest = 0.0;
+                    run(1.0, largest);
+                    CHECK(session.report().held);
+                    CHECK(largest <= 0.05);
+                    // caught: what is left of the swing is none
+                    CHECK(std::abs(session.report().configuration_rate[0]) < 0.02 * speed + 1e-3);
+                }
     }
 
     TEST_CASE("the truncated inverse is the inverse where it can be, and never more than 50 devices") {

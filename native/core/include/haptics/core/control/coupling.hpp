@@ -50,6 +50,20 @@ double lightest_mass(const Mat3& device_mass);
 /// D^-1 J_h^T is singular.
 Mat3 combined_mass(const Mat3& grip_mobility, const Mat3& device_mass);
 
+/// What the force channels do for the motion of device and tool (coupling.cpp).
+struct LentMass {
+    /// Inertia at handle and grip that is kept from the hand: the channels pay for its motion and get it
+    /// back.
+    Mat3 device{Mat3::Zero()};
+    Mat3 tool{Mat3::Zero()};
+    /// Part of the device's friction that they carry where the hand's force is measured.
+    Mat3 friction{Mat3::Zero()};
+};
+/// In the S form; `share`: the part of the forces that takes effect, 0..1.
+LentMass lent_mass(const Mat3& grip_mobility, const Mat3& device_mass, double share);
+/// In acceleration feed-forward, with `hidden` of the device's mass kept from the hand.
+LentMass lent_mass_hidden(const Mat3& grip_mobility, const Mat3& device_mass, const Mat3& hidden);
+
 /// (J_h D^-1 J_h^T)^-1, the mass of the proxy at the grip, in the directions in which it is less than 25
 /// times the device's; above 50 times, and where the linkage cannot move at all, zero; between the two a
 /// smooth passage.

@@ -52,7 +52,7 @@ struct SessionSettings {
     /// Coupling gains; all zero chooses default_gains.
     CouplingGains gains;
     ObserverSettings observer;
-    /// Damps the handle while the loop has created energy.
+    /// Damps the handle while the loop has created energy. Hidden inertia always does.
     bool passivity_control{false};
     /// Delay that the device adds, s, >= 0; used to choose the gains without an observer.
     double device_delay{0.0};
@@ -91,11 +91,9 @@ class Session {
     /// One step of the loop's period. Allocation-free, bounded, never throws.
     void step();
 
-    /// Taking hold and letting go take this long, s.
-    static constexpr double k_grasp_time = 0.1;
-
-    /// The hand takes hold of the tool (the offset between handle and grip freezes, so the force starts at
-    /// zero) or lets go.
+    /// The hand takes hold of the tool, gently where the tool moves, and the offset between handle and grip
+    /// freezes; or lets go, in 0.1 s, and more slowly where a large force has to fade. The force starts at
+    /// zero and changes by some 0.04 N in a step.
     void hold(bool held);
     /// What the scene wants of clutch, mapping and turn; takes effect without a jump of the force.
     void place(const HandPlacement& placement) { placement_.want(placement); }
@@ -159,7 +157,13 @@ class Session {
     [[nodiscard]] Pose target() const { return (parked_ ? park_ : Pose(handle_ + grab_offset_)) + turned(); }
     void place_target(HandInput& hand) const;
     void book_own_work();
+    [[nodiscard]] double friction_work();
     void freeze_offset();
+    void take_hold();
+    void grow_firm();
+    [[nodiscard]] double channels() const;
+    [[nodiscard]] Wrench whole_hand_force() const;
+    [[nodiscard]] double coupling_energy(double most_force, double most_torque) const;
     void read_device();
     void follow_handle();
     [[nodiscard]] Fault device_faults() const;
@@ -213,14 +217,33 @@ class Session {
     /// Most of the device's inertia that is hidden; how much of that is hidden now, 0..1.
     HiddenInertia hidden_;
     double hiding_{0.0};
-    /// Inertia that the device keeps from the hand in this step.
-    Mat3 hidden_mass_{Mat3::Zero()};
+    /// What the force channels lend in this step (ledger).
+    LentMass lent_;
     /// Part of the last command that the gate let through.
     double share_{1.0};
     bool held_{false};
-    /// How firmly the hand holds, 0..1: taking hold and letting go fade the coupling, so that no force jumps.
-    double grasp_{0.0};
-    double grasping_{0.0};
+    /// How much of all forces passes between hand and tool: fades when the hand lets go.
+    Fade grasp_{0.0};
+    /// The same for the force channels alone: fades when the hand takes hold.
+    Fade channels_{0.0};
+    /// While the hand takes hold of a moving tool: part of the coupling's damping that acts, without a
+    /// spring, and the time in which it grows by e, s. 1: it holds.
+    double firmness_{1.0};
+    double firming_time_{0.0};
+    /// Steps until it is known how fast the tool moves past the hand.
+    int taking_{0};
+    /// Grip of the tool a step ago, and how fast it moved in the step.
+    Pose last_grip_{0.0, 0.0, 0.0};
+    Twist grip_velocity_{0.0, 0.0, 0.0};
+    /// What the gate let through of the forces by ramp and pause, and by place too.
+    double gate_ramp_{0.0};
+    double gate_fade_{0.0};
+    /// The last sample, for the work of a measured hand against the device's friction.
+    Pose sampled_{0.0, 0.0, 0.0};
+    Twist sampled_velocity_{0.0, 0.0, 0.0};
+    Wrench sampled_hand_{0.0, 0.0, 0.0};
+    /// Force of the hand fed to the tool in this step.
+    Wrench fed_{0.0, 0.0, 0.0};
     bool fresh_{false};
     bool missing_{false};
     bool arm_wanted_{false};

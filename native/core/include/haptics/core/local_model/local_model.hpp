@@ -83,8 +83,8 @@ struct StepFigures {
     /// Energy at the end of the step in the tool's motion, in the contact springs on it and in the coupling,
     /// J.
     double stored_energy{0.0};
-    /// Work of the step on the tool by gravity, by what it touches (moving walls, movable neighbors) and by
-    /// the hand's force channel, J.
+    /// Work of the step on the tool by gravity and by what it touches (moving walls, movable neighbors), J:
+    /// not that of the hand's force channel.
     double source_work{0.0};
     /// Net normal impulse of collisions along all patches, N s (sizes added).
     double impulse_size{0.0};

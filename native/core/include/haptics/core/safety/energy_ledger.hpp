@@ -23,6 +23,8 @@ class EnergyLedger {
     /// elsewhere since the last call.
     void book(const Pose& pose, double stored = 0.0, double source_work = 0.0);
 
+    /// The wrench of the last set_force.
+    [[nodiscard]] const Wrench& force() const { return force_; }
     /// Net energy given to the hand since reset, J; negative when the hand put more in.
     [[nodiscard]] double delivered() const { return delivered_; }
     /// Energy out of nothing since reset, J; negative when energy was dissipated.

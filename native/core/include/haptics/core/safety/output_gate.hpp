@@ -53,6 +53,8 @@ struct GateOutput {
     Wrench applied{0.0, 0.0, 0.0};
     GateFlag flags{GateFlag::none};
     /// Start ramp times pause, 0..1; 0 when disarmed.
+    double ramp{0.0};
+    /// That times the fades near the edge of reach and near singular poses.
     double fade{0.0};
     /// Latched faults.
     Fault faults{Fault::none};
@@ -80,6 +82,9 @@ class OutputGate {
     void set_homed(bool homed);
     /// Fades the output out (true) or back in (false); not a fault.
     void set_paused(bool paused) { paused_ = paused; }
+    /// Most by which forces that faded at an edge or near a singular pose come back in the next step, 0..1. A
+    /// force that grows under tension would give energy that nobody put in.
+    void limit_return(double most) { most_return_ = most; }
     /// Latches faults found elsewhere (watchdogs, encoder residual, stop key).
     void raise(Fault fault);
 
@@ -115,6 +120,8 @@ class OutputGate {
     Fault present_{Fault::none};
     double ramp_{0.0};
     double open_{1.0};
+    double place_fade_{1.0};
+    double most_return_{1.0};
     double energy_{0.0};
     double too_fast_for_{0.0};
     double at_rest_for_{0.0};

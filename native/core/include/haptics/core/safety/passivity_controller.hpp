@@ -19,7 +19,10 @@ class PassivityController {
     /// wrench that acts now. `twist`, `mass`: of the handle, device frame. `step`: s, > 0.
     Wrench damp(double created, const Wrench& force, const Twist& twist, const Mat3& mass, double step);
     /// Forgets the largest force.
-    void reset() { most_.setZero(); }
+    void reset() {
+        most_.setZero();
+        known_ = false;
+    }
     /// Energy taken since the start, as commanded, J.
     [[nodiscard]] double taken() const { return taken_; }
 
@@ -29,6 +32,12 @@ class PassivityController {
     /// Largest force so far on each freedom.
     Vec3 most_{0.0, 0.0, 0.0};
     double taken_{0.0};
+    /// Growth of what was created per step, a mean over k_mean steps, looked ahead by k_ahead of them.
+    static constexpr double k_mean = 8.0;
+    static constexpr double k_ahead = 4.0;
+    double rise_{0.0};
+    double last_{0.0};
+    bool known_{false};
 };
 
 } // namespace haptics
