@@ -55,36 +55,36 @@ bool solve_primal(const Model& model, Data& data, const HandInput& hand, double 
     return solver.run(integrator);
 }
 
-// J D^-1 J' of a row
-double mobility_of(const Model& model, Data& data, const double* entries) {
-    ContactSystem& s = data.system;
-    const Eigen::Map<const Eigen::VectorXd> row(entries, s.freedoms);
-    if (s.has_inverse)
-        return row.dot(s.inverse_mass.topLeftCorner(s.freedoms, s.freedoms).lazyProduct(row));
-    const int n = s.tool_freedoms;
-    s.bias = row.head(n);
-    solve(model.tool.linkage, data.linkage, data.factor, s.bias, s.bias);
-    double sum = row.head(n).dot(s.bias);
-    for (int i = n; i < s.freedoms; i += 3)
-        sum += row.segment<3>(i).dot(s.inverse_mass.block<3, 3>(i, i).lazyProduct(row.segment<3>(i)));
-    return sum;
-}
-
 // A step with the forces of its start is (explicit_step.hpp).
 bool is_stable(const Model& model, Data& data, double dt) {
     ContactSystem& s = data.system;
-    ExplicitStep step(dt);
+    const int n = s.freedoms;
+    bool any = false;
+    const auto add = [&](double weight, const auto& row) {
+        if (!any)
+            s.work.setZero(n, n);
+        any = true;
+        s.work.noalias() += (weight * row.transpose()).lazyProduct(row);
+    };
     for (int i = 0; i < s.points; ++i) {
         const PointRow& p = s.point[static_cast<std::size_t>(i)];
         if (p.gap < 0.0)
-            step.add(p.stiffness, p.damping, mobility_of(model, data, s.normal_rows.row(i).data()));
+            add(explicit_weight(p.stiffness, p.damping, dt), s.normal_rows.row(i));
     }
     for (int i = 0; i < s.patches; ++i) {
         const PatchRow& t = s.row[static_cast<std::size_t>(i)];
         if (t.patch >= 0 && has_friction(t))
-            step.add(t.stiffness, t.damping, mobility_of(model, data, s.tangent_rows.row(i).data()));
+            add(explicit_weight(t.stiffness, t.damping, dt), s.tangent_rows.row(i));
     }
-    return step.is_stable();
+    if (!any)
+        return true;
+    if (model.tool.articulated)
+        need_inverse(model, data);
+    s.base.resize(n, n);
+    s.base.noalias() = s.inverse_mass.topLeftCorner(n, n).lazyProduct(s.work);
+    // false for what is not a number
+    return s.base.trace() <= k_explicit_limit ||
+           s.base.cwiseProduct(s.base.transpose()).sum() <= k_explicit_limit * k_explicit_limit;
 }
 
 // velocities and forces at the end of the sub-step; false when the solver used its fallback

@@ -266,23 +266,40 @@ class RigidContacts {
         return c.mode == FrictionMode::off || c.stiffness <= 0.0 ? 0.0 : -c.force / c.stiffness;
     }
 
-    // a step with the forces of its start is (explicit_step.hpp)
+    // A step with the forces of its start is (explicit_step.hpp).
     [[nodiscard]] bool is_stable() const {
         const double along = 1.0 / model_.tool.mass;
         const double about = 1.0 / model_.tool.inertia;
-        const auto mobility = [&](double turn) { return along + about * (turn * turn); };
-        ExplicitStep step(dt_);
+        // of D^-1 S, with its three different entries off the diagonal squared
+        double xx = 0.0;
+        double yy = 0.0;
+        double turns = 0.0;
+        double xy = 0.0;
+        double x_turn = 0.0;
+        double y_turn = 0.0;
+        const auto add = [&](double weight, double x, double y, double turn) {
+            const double w = weight * along;
+            xx += w * (x * x);
+            yy += w * (y * y);
+            turns += weight * about * (turn * turn);
+            xy += w * (x * y);
+            x_turn += weight * (x * turn);
+            y_turn += weight * (y * turn);
+        };
         for (int i = 0; i < count_; ++i) {
             const Contact& c = contact_[static_cast<std::size_t>(i)];
             for (int k = 0; k < c.points; ++k) {
                 const Point& p = c.point[static_cast<std::size_t>(k)];
                 if (p.gap < 0.0)
-                    step.add(p.stiffness, p.damping, mobility(p.turn));
+                    add(explicit_weight(p.stiffness, p.damping, dt_), c.nx, c.ny, p.turn);
             }
             if (c.rough)
-                step.add(c.stiffness, c.damping, mobility(c.slip_turn));
+                add(explicit_weight(c.stiffness, c.damping, dt_), -c.ny, c.nx, c.slip_turn);
         }
-        return step.is_stable();
+        if (xx + yy + turns <= k_explicit_limit)
+            return true;
+        const double off = xy * xy + along * about * (x_turn * x_turn + y_turn * y_turn);
+        return xx * xx + yy * yy + turns * turns + 2.0 * off <= k_explicit_limit * k_explicit_limit;
     }
 
     // semi-implicit: forces of the start of the step

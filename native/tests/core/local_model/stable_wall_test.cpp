@@ -2,6 +2,7 @@
 
 #include <haptics/core/local_model/local_model.hpp>
 #include <haptics/shared/paper_wall.hpp>
+#include <haptics/shared/tool_in_socket.hpp>
 
 #include <doctest/doctest.h>
 
@@ -138,4 +139,6 @@ TEST_CASE("beyond its bound semi-implicit gives way and says so, within it it do
         REQUIRE(out.contact.y() > 0.0);
         CHECK(out.fell_back == (share > 1.0));
     }
+    // many contacts share the tool's few freedoms: it refuses steps that fell back
+    CHECK_NOTHROW((void)shared::tool_in_socket(64, Integrator::semi_implicit));
 }
