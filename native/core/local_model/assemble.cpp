@@ -147,6 +147,52 @@ void write_rigid_row(const Data& data, const Body& other, bool moves, const Vec2
     drive = moves ? n.dot(velocity_at(other.velocity, p - other.pose.head<2>())) : 0.0;
 }
 
+// Links of one linkage answer together.
+void couple_links(Data& data) {
+    ContactSystem& s = data.system;
+    std::array<bool, k_max_movables> done{};
+    for (std::size_t i = 0; i < static_cast<std::size_t>(data.movable_count); ++i) {
+        const auto body = [&data](std::size_t k) -> const Body& {
+            return data.neighbors.body[static_cast<std::size_t>(data.movable[k].body)];
+        };
+        const auto joined = [&](std::size_t k) { return data.movable[k].row != k_none && body(k).jointed; };
+        if (done[i] || !joined(i))
+            continue;
+        std::array<std::size_t, k_max_movables> link;
+        std::size_t count = 0;
+        for (std::size_t k = i; k < static_cast<std::size_t>(data.movable_count); ++k)
+            if (joined(k) && body(k).linkage == body(i).linkage) {
+                link[count++] = k;
+                done[k] = true;
+            }
+        if (count < 2)
+            continue;
+        constexpr int k_most = 3 * k_max_movables;
+        using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, k_most, k_most>;
+        const auto size = static_cast<Eigen::Index>(3 * count);
+        Block mobility(size, size);
+        Eigen::Matrix<double, Eigen::Dynamic, 1, 0, k_most, 1> acceleration(size);
+        const auto at = [](std::size_t k) { return static_cast<Eigen::Index>(3 * k); };
+        for (std::size_t a = 0; a < count; ++a) {
+            acceleration.segment<3>(at(a)) = body(link[a]).acceleration;
+            for (std::size_t b = 0; b < count; ++b)
+                mobility.block<3, 3>(at(a), at(b)) =
+                    a == b ? body(link[a]).mobility : data.link_coupling[link[a]][link[b]];
+        }
+        const Block mass = mobility.llt().solve(Block::Identity(size, size));
+        acceleration = mass * acceleration.eval();
+        for (std::size_t a = 0; a < count; ++a) {
+            const std::int32_t row = data.movable[link[a]].row;
+            s.external.segment<3>(row) = acceleration.segment<3>(at(a));
+            for (std::size_t b = 0; b < count; ++b) {
+                const std::int32_t column = data.movable[link[b]].row;
+                s.mass.block<3, 3>(row, column) = mass.block<3, 3>(at(a), at(b));
+                s.inverse_mass.block<3, 3>(row, column) = mobility.block<3, 3>(at(a), at(b));
+            }
+        }
+    }
+}
+
 void assemble_mass(const Model& model, Data& data, double dt) {
     ContactSystem& s = data.system;
     const int n = s.freedoms;
@@ -178,6 +224,7 @@ void assemble_mass(const Model& model, Data& data, double dt) {
         s.inverse_mass.block<3, 3>(m.row, m.row) = b.mobility;
         s.external.segment<3>(m.row) = mass * b.acceleration;
     }
+    couple_links(data);
     load_velocities(model, data);
 }
 

@@ -8,12 +8,13 @@
 //     A (v+ - v) = h (f - h sum K_j r_j' r_j v) + h R' P,   A = D + sum (h B_j + h^2 K_j) r_j' r_j,
 // so the link's center of mass moves by
 //     W = R A^-1 R',   a = R A^-1 (f - h sum K_j r_j' r_j v) + J' v
-// and what the tool's step foresees is what the linkage then does, as long as the same contacts press and
-// only one link is touched; with several, the tool foresees each without the others. Several linkages take
-// turns: each meets those whose turn comes later in the same way, with what pushed them before it in f, and
-// they know nothing of it but the wrench, so that a hit between two is resolved once, for both. Rows are
-// those of the last step that pressed or stuck; what slid goes on with the force it had. Contacts of the
-// linkage with movables are left out: the tool's model has these itself.
+// and what the tool's step foresees is what the linkage then does, as long as the same contacts press. A push
+// on link k moves link i by R_i A^-1 R_k': without that the tool would take links that it touches at once for
+// bodies of their own, and throw a row of four that are fixed to each other with twice the energy of a hit.
+// Several linkages take turns: each meets those whose turn comes later in the same way, with what pushed them
+// before it in f, and they know nothing of it but the wrench, so that a hit between two is resolved once, for
+// both. Rows are those of the last step that pressed or stuck; what slid goes on with the force it had.
+// Contacts of the linkage with movables are left out: the tool's model has these itself.
 
 #include <haptics/core/dynamics/jacobian.hpp>
 #include <haptics/core/dynamics/kinematics.hpp>
@@ -21,6 +22,8 @@
 #include <haptics/core/local_model/free_linkage.hpp>
 
 #include <algorithm>
+#include <array>
+#include <optional>
 
 #include "internal.hpp"
 
@@ -106,39 +109,68 @@ void add_pushes(const LinkageModel& linkage, const Data& data, Yielding& y) {
     }
 }
 
+// The linkage's step as it would be without what is asked about: A and the forces on the joints.
+class Step {
+  public:
+    Step(const Model& model, const Data& data, double dt)
+        : linkage_(model.tool.linkage)
+        , data_(data)
+        , yielding_{{}, {}, data.linkage.velocity, dt} {
+        mass_matrix(linkage_, data.linkage, yielding_.matrix);
+        bias_forces(linkage_, data.linkage, data.gravity, yielding_.force);
+        yielding_.force = -yielding_.force;
+        if (linkage_.has_passive)
+            add_joint_springs(linkage_, data.linkage, yielding_);
+        if (data.step > 0)
+            add_rows(data, yielding_);
+        if (data.pushed)
+            add_pushes(linkage_, data, yielding_);
+        factor_.compute(yielding_.matrix);
+        factor_.solveInPlace(yielding_.force);
+    }
+    [[nodiscard]] PointJacobian rows(int link) const {
+        PointJacobian rows;
+        point_jacobian(linkage_, data_.linkage, link, center(link), rows);
+        return rows;
+    }
+    // velocity of `to` for unit impulses along `from`
+    [[nodiscard]] Mat3 mobility(const PointJacobian& to, const PointJacobian& from) const {
+        Mat3 out;
+        for (int i = 0; i < 3; ++i) {
+            LinkageVector column = from.row(i).transpose();
+            factor_.solveInPlace(column);
+            out.col(i) = to.lazyProduct(column);
+        }
+        return out;
+    }
+    [[nodiscard]] LinkResponse response(int link) const {
+        const PointJacobian own = rows(link);
+        const Mat3 mobility_of_own = mobility(own, own);
+        LinkResponse out;
+        out.mobility = 0.5 * (mobility_of_own + mobility_of_own.transpose());
+        out.acceleration = own.lazyProduct(yielding_.force);
+        if (linkage_.coriolis)
+            out.acceleration += point_bias(linkage_, data_.linkage, link, center(link));
+        return out;
+    }
+
+  private:
+    [[nodiscard]] Vec2 center(int link) const {
+        return link_center_pose(linkage_, data_.linkage, link).head<2>();
+    }
+
+    const LinkageModel& linkage_;
+    const Data& data_;
+    Yielding yielding_;
+    Eigen::LLT<LinkageMatrix> factor_;
+};
+
 } // namespace
 
 LinkResponse link_response(const Model& model, const Data& data, int link, double dt) {
-    LinkResponse out;
-    const LinkageModel& linkage = model.tool.linkage;
-    if (!model.tool.articulated || link < 0 || link >= linkage.link_count || !(dt > 0.0))
-        return out;
-    Yielding y{{}, {}, data.linkage.velocity, dt};
-    mass_matrix(linkage, data.linkage, y.matrix);
-    bias_forces(linkage, data.linkage, data.gravity, y.force);
-    y.force = -y.force;
-    if (linkage.has_passive)
-        add_joint_springs(linkage, data.linkage, y);
-    if (data.step > 0)
-        add_rows(data, y);
-    if (data.pushed)
-        add_pushes(linkage, data, y);
-
-    const Vec2 center = link_center_pose(linkage, data.linkage, link).head<2>();
-    PointJacobian rows;
-    point_jacobian(linkage, data.linkage, link, center, rows);
-    const Eigen::LLT<Eigen::Ref<LinkageMatrix>> factor(y.matrix);
-    for (int i = 0; i < 3; ++i) {
-        LinkageVector column = rows.row(i).transpose();
-        factor.solveInPlace(column);
-        out.mobility.col(i) = rows.lazyProduct(column);
-    }
-    out.mobility = 0.5 * (out.mobility + out.mobility.transpose()).eval();
-    factor.solveInPlace(y.force);
-    out.acceleration = rows.lazyProduct(y.force);
-    if (linkage.coriolis)
-        out.acceleration += point_bias(linkage, data.linkage, link, center);
-    return out;
+    if (!model.tool.articulated || link < 0 || link >= model.tool.linkage.link_count || !(dt > 0.0))
+        return {};
+    return Step(model, data, dt).response(link);
 }
 
 void push_link(Data& data, int link, const Wrench& wrench) {
@@ -153,6 +185,12 @@ void end_pushes(Data& data) {
 }
 
 void follow_linkage(Data& data, std::uint64_t id, const Model& model, const Data& linkage, double dt) {
+    if (!model.tool.articulated || !(dt > 0.0))
+        return;
+    std::optional<Step> step; // none of its links may be near
+    std::array<PointJacobian, k_max_movables> rows;
+    std::array<std::int32_t, k_max_movables> followed;
+    std::size_t count = 0;
     for (std::int32_t i = 0; i < data.movable_count; ++i) {
         MovableState& m = data.movable[static_cast<std::size_t>(i)];
         if (m.body < 0)
@@ -166,10 +204,20 @@ void follow_linkage(Data& data, std::uint64_t id, const Model& model, const Data
         m.blend_left = 0.0;
         m.lead.setZero();
         m.shift_velocity.setZero();
-        const LinkResponse response = link_response(model, linkage, b.link, dt);
+        if (!step)
+            step.emplace(model, linkage, dt);
+        const LinkResponse response = step->response(b.link);
         b.mobility = response.mobility;
         b.mobility.diagonal() += k_least * Vec3(1.0 / b.mass, 1.0 / b.mass, 1.0 / b.inertia);
         b.acceleration = response.acceleration;
+        rows[count] = step->rows(b.link);
+        for (std::size_t k = 0; k < count; ++k) {
+            const auto other = static_cast<std::size_t>(followed[k]);
+            const auto own = static_cast<std::size_t>(i);
+            data.link_coupling[own][other] = step->mobility(rows[count], rows[k]);
+            data.link_coupling[other][own] = data.link_coupling[own][other].transpose();
+        }
+        followed[count++] = i;
     }
 }
 

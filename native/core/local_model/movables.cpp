@@ -266,6 +266,8 @@ void take_movables(const Neighborhood& n, Data& data) {
         m.body = b;
     }
     forget_movables(data, n.echo_step);
+    for (auto& of : data.link_coupling) // it goes by their places in the list
+        of.fill(Mat3::Zero());
 }
 
 void move_movables(Data& data, double dt) {

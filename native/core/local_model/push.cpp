@@ -54,7 +54,11 @@ class Push {
         , s_(data.system)
         , normal_(normal)
         , tangent_(tangent)
-        , push_(FreedomVector::Zero(s_.freedoms)) {}
+        , push_(FreedomVector::Zero(s_.freedoms)) {
+        const auto end = data.movable.begin() + data.movable_count;
+        coupled_ = std::count_if(data.movable.begin(), end,
+                                 [this](const MovableState& m) { return is_jointed(m); }) > 1;
+    }
 
     // true when the tool pushes any of them
     bool collect() {
@@ -131,8 +135,15 @@ class Push {
 
     [[nodiscard]] FreedomVector inverse(const FreedomVector& impulse) const {
         FreedomVector v = impulse;
-        for (Eigen::Index i = s_.tool_freedoms; i + 3 <= v.size(); i += 3)
-            v.segment<3>(i) = s_.inverse_mass.block<3, 3>(i, i) * impulse.segment<3>(i);
+        const Eigen::Index n = s_.tool_freedoms;
+        if (coupled_) { // links of one linkage
+            const Eigen::Index others = v.size() - n;
+            v.tail(others) =
+                s_.inverse_mass.bottomRightCorner(others, others).lazyProduct(impulse.tail(others));
+        } else {
+            for (Eigen::Index i = n; i + 3 <= v.size(); i += 3)
+                v.segment<3>(i) = s_.inverse_mass.block<3, 3>(i, i) * impulse.segment<3>(i);
+        }
         v.head(s_.tool_freedoms).setZero();
         return v;
     }
@@ -206,6 +217,7 @@ class Push {
     const double* normal_;
     const double* tangent_;
     FreedomVector push_;
+    bool coupled_{false};
     int count_{0};
     std::array<Answer, k_most_answers> answer_;
 };

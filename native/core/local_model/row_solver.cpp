@@ -106,10 +106,8 @@ class RowSolver {
         solve(model_.tool.linkage, data_.linkage, s_.has_joint_springs ? r_.factor : data_.factor, s_.bias,
               s_.bias);
         x.head(n) = s_.bias;
-        for (int i = n; i < s_.freedoms; i += 3) {
-            const Vec3 push = x.template segment<3>(i);
-            x.template segment<3>(i) = s_.inverse_mass.block<3, 3>(i, i) * push;
-        }
+        const int others = s_.freedoms - n;
+        x.tail(others) = s_.inverse_mass.bottomRightCorner(others, others).lazyProduct(x.tail(others)).eval();
     }
 
     void free_velocity() {

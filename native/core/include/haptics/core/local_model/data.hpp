@@ -82,6 +82,8 @@ struct Data {
     /// Movables of the snapshot that found no place and act as kinematic (a reported fault).
     std::int32_t movable_overflow{0};
     std::array<MovableState, k_max_movables> movable;
+    /// Of two movables that are links of one linkage: velocity of the first for a unit impulse on the other.
+    std::array<std::array<Mat3, k_max_movables>, k_max_movables> link_coupling;
     PatchList patches;
     PatchList previous;
     /// Patches at the start of a part of the step (exact integrator).
