@@ -30,7 +30,7 @@ namespace {
 // places that differ by less are one, m
 constexpr double k_same_place = 1e-5;
 // contacts of two steps that are nearer than this and the motion are one, m
-constexpr double k_near = 1e-3;
+constexpr double k_near_row = 1e-3;
 
 std::size_t index(int i) {
     return static_cast<std::size_t>(i);
@@ -312,7 +312,7 @@ double unearned_energy(const Data& data, double dt, double& earned) {
             const double stiffness = now.surface.stiffness * point.weight;
             const double arm = (point.position - data.pose.head<2>()).norm();
             const double reach =
-                2.0 * dt * (data.velocity.head<2>().norm() + arm * std::abs(data.velocity.z())) + k_near;
+                2.0 * dt * (data.velocity.head<2>().norm() + arm * std::abs(data.velocity.z())) + k_near_row;
             double nearest = reach;
             double gap = 0.0;
             for (int j = 0; point.gap < 0.0 && j < data.previous.count; ++j) {

@@ -13,8 +13,8 @@
 // dampers by q = sum B_e |row_e| |push_e|, and with velocities measured in units of 1 / r the whole system by
 // the root r of r^2 = q r + p. So the terms fall as (r h)^j / j!. Intervals end at r h = k_reach, where the
 // largest term is about 3 times the first (no digits are lost), and the series ends where the bound is below
-// k_rest. An interval covers at least a third of the period of the fastest mode that the bound allows, and
-// more of the actual one.
+// k_series_rest. An interval covers at least a third of the period of the fastest mode that the bound allows,
+// and more of the actual one.
 
 #include "flow.hpp"
 
@@ -24,14 +24,14 @@ namespace haptics::local {
 namespace {
 
 constexpr double k_reach = 2.5;
-constexpr double k_rest = 1e-17;
+constexpr double k_series_rest = 1e-17;
 // two derivatives are taken of the series: a force and its rate
 constexpr int k_more_terms = 2;
 
 int terms_for(double reach) {
     double bound = 1.0;
     int terms = 1;
-    while (bound > k_rest && terms < k_max_terms - k_more_terms)
+    while (bound > k_series_rest && terms < k_max_terms - k_more_terms)
         bound *= reach / terms++;
     return terms + k_more_terms;
 }

@@ -68,18 +68,18 @@ Books run(Session& session, double encoder, int steps, int cycle) {
     return books;
 }
 
-struct Channels {
+struct PortChannels {
     const char* name;
     Coupling coupling;
     HandForce hand_force;
 };
-constexpr Channels k_channels[]{
+constexpr PortChannels k_port_channels[]{
     {"virtual coupling", Coupling::virtual_coupling, HandForce::combined},
     {"four channels", Coupling::four_channel, HandForce::combined},
     {"transparent", Coupling::four_channel, HandForce::transparent},
 };
 
-ObservedToolOptions with(const Channels& channels, bool controlled) {
+ObservedToolOptions with(const PortChannels& channels, bool controlled) {
     ObservedToolOptions o;
     o.coupling = channels.coupling;
     o.hand_force = channels.hand_force;
@@ -102,7 +102,7 @@ std::unique_ptr<Neighborhood> wide_floor() {
 TEST_SUITE("passivity ledger, cases") {
     TEST_CASE("a held weight that is raised and lowered, and a free tool: created is what the port gave in a "
               "cycle, and next to nothing when it is controlled") {
-        for (const Channels& channels : k_channels)
+        for (const PortChannels& channels : k_port_channels)
             for (const bool weight : {true, false}) {
                 CAPTURE(std::string(channels.name));
                 CAPTURE(weight);
@@ -123,7 +123,7 @@ TEST_SUITE("passivity ledger, cases") {
 
     TEST_CASE("pressed into a wall at the edge of reach, where no force is, and brought inside: the force "
               "comes back when the hand lets up, not before") {
-        for (const Channels& channels : k_channels) {
+        for (const PortChannels& channels : k_port_channels) {
             CAPTURE(std::string(channels.name));
             ObservedToolOptions o = with(channels, true);
             o.distance = 0.002;
@@ -144,7 +144,7 @@ TEST_SUITE("passivity ledger, cases") {
     }
 
     TEST_CASE("chains held by their ends, angle and all, create next to nothing when controlled") {
-        for (const Channels& channels : k_channels)
+        for (const PortChannels& channels : k_port_channels)
             for (const int links : {1, 2, 3}) {
                 CAPTURE(std::string(channels.name));
                 CAPTURE(links);

@@ -14,9 +14,9 @@ using namespace haptics;
 namespace {
 
 // a tool that a hand of 200 N/m presses on whatever the current list of bodies has
-class Scene {
+class FadingScene {
   public:
-    explicit Scene(const Convex* shape = nullptr)
+    explicit FadingScene(const Convex* shape = nullptr)
         : model(shared::box_tool())
         , data(std::make_unique<Data>())
         , next(std::make_unique<Neighborhood>()) {
@@ -84,7 +84,7 @@ TEST_CASE("a touched body that leaves fades within 50 ms and leaves no ghost") {
     const Convex disc = make_disc(Vec2::Zero(), 0.01);
     for (const Convex* shape : {static_cast<const Convex*>(nullptr), &disc})
         for (const BodyKind kind : {BodyKind::fixed, BodyKind::kinematic, BodyKind::movable}) {
-            Scene s(shape);
+            FadingScene s(shape);
             Body& floor = s.add(7, kind, k_floor);
             floor.mass = 1e3; // hardly yields
             floor.inertia = 10.0;
@@ -109,7 +109,7 @@ TEST_CASE("a touched body that leaves fades within 50 ms and leaves no ghost") {
 }
 
 TEST_CASE("what leaves is let go of as soon as the tool is off it") {
-    Scene s;
+    FadingScene s;
     s.add(7, BodyKind::fixed, k_floor);
     s.publish();
     s.run(400);
@@ -126,7 +126,7 @@ TEST_CASE("a body that appears around the tool fades in, pushes it out gently an
     for (const Convex* shape : {static_cast<const Convex*>(nullptr), &disc})
         for (const BodyKind kind : {BodyKind::fixed, BodyKind::kinematic, BodyKind::movable})
             for (const double speed : {0.0, 0.05}) {
-                Scene s(shape);
+                FadingScene s(shape);
                 s.hand.target.y() = 0.0097;
                 s.publish();
                 s.run(500);
@@ -161,7 +161,7 @@ TEST_CASE("a body that appears around the tool fades in, pushes it out gently an
 }
 
 TEST_CASE("a body that appears free of the tool is whole when it is hit") {
-    Scene s;
+    FadingScene s;
     s.hand.held = false;
     Surface lively = shared::paper_surface();
     lively.restitution = 0.8;
@@ -179,7 +179,7 @@ TEST_CASE("a wall that is replaced by its like is not felt") {
     Surface rough = shared::paper_surface();
     rough.static_friction = rough.dynamic_friction = 0.5;
     for (const int pieces : {1, 4}) {
-        Scene s;
+        FadingScene s;
         s.hand.force = Wrench(0.5, 0.0, 0.0);
         const auto list = [&](std::uint64_t first) {
             s.clear();
@@ -208,7 +208,7 @@ TEST_CASE("a wall that is replaced by its like is not felt") {
 TEST_CASE("of a tool on two tiles one leaves: the force stays, its point moves over") {
     for (const bool seams : {false, true})
         for (const std::uint64_t leaves : {std::uint64_t{1}, std::uint64_t{2}}) {
-            Scene s;
+            FadingScene s;
             const auto list = [&](bool both) {
                 s.clear();
                 if (both || leaves == 2)
@@ -241,7 +241,7 @@ TEST_CASE("of a tool on two tiles one leaves: the force stays, its point moves o
 }
 
 TEST_CASE("a body that leaves and comes back at once goes on from where it was") {
-    Scene s;
+    FadingScene s;
     s.add(7, BodyKind::kinematic, k_floor);
     s.publish();
     s.run(600);
@@ -262,7 +262,7 @@ TEST_CASE("a body that leaves and comes back at once goes on from where it was")
 }
 
 TEST_CASE("the wall behind a pinned object leaves without a jump in the hand") {
-    Scene s;
+    FadingScene s;
     const auto list = [&](bool wall) {
         s.clear();
         s.add(7, BodyKind::movable, make_box(Vec2::Zero(), Vec2(0.03, 0.02)), shared::paper_surface(),
@@ -282,7 +282,7 @@ TEST_CASE("the wall behind a pinned object leaves without a jump in the hand") {
 }
 
 TEST_CASE("full lists leave no room to fade, and nothing breaks") {
-    Scene s;
+    FadingScene s;
     s.add(7, BodyKind::fixed, k_floor);
     s.publish();
     s.run(300);

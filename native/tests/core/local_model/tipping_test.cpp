@@ -15,10 +15,11 @@ using namespace haptics;
 
 namespace {
 
-constexpr double k_mass = 0.3;
+constexpr double k_box_mass = 0.3;
 constexpr double k_half_length = 0.03;
 constexpr double k_half_height = 0.01;
-constexpr double k_inertia = k_mass * (k_half_length * k_half_length + k_half_height * k_half_height) / 3.0;
+constexpr double k_inertia =
+    k_box_mass * (k_half_length * k_half_length + k_half_height * k_half_height) / 3.0;
 constexpr double k_time = 0.08;
 
 struct Fall {
@@ -41,7 +42,7 @@ struct Motion {
 };
 
 double energy(const Motion& m) {
-    return 0.5 * k_mass * m.speed * m.speed + 0.5 * k_inertia * m.spin * m.spin;
+    return 0.5 * k_box_mass * m.speed * m.speed + 0.5 * k_inertia * m.spin * m.spin;
 }
 
 double lever(double turn, double side) {
@@ -80,8 +81,8 @@ Motion flight(const Fall& fall) {
         const double side = gap(m, 1.0) < gap(m, -1.0) ? 1.0 : -1.0;
         const double a = lever(m.turn, side);
         const double impulse =
-            -(1.0 + fall.restitution) * (m.speed + a * m.spin) / (1.0 / k_mass + a * a / k_inertia);
-        m.speed += impulse / k_mass;
+            -(1.0 + fall.restitution) * (m.speed + a * m.spin) / (1.0 / k_box_mass + a * a / k_inertia);
+        m.speed += impulse / k_box_mass;
         m.spin += impulse * a / k_inertia;
     }
     return after(left);
@@ -93,7 +94,7 @@ Motion fall_down(const Fall& fall, double& deepest) {
     s.stiffness = fall.stiffness;
     s.damping = 20.0;
     s.restitution = fall.restitution;
-    Model model = shared::box_tool(k_mass);
+    Model model = shared::box_tool(k_box_mass);
     model.tool.inertia = k_inertia;
     model.tool.shape.piece[0].convex = make_box(Vec2::Zero(), Vec2(2.0 * k_half_length, 2.0 * k_half_height));
     model.settings.integrator = fall.integrator;
@@ -167,7 +168,7 @@ TEST_CASE("a box that tips onto its other corner without restitution stays there
                 fall.stiffness = 15000.0; // it bears no more
             double deepest = 0.0;
             const Motion m = fall_down(fall, deepest);
-            CHECK(energy(m) < 1e-3 * 0.5 * k_mass);
+            CHECK(energy(m) < 1e-3 * 0.5 * k_box_mass);
             CHECK(deepest < 1e-5);
         });
     }
