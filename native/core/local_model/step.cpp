@@ -62,12 +62,8 @@ void advance(const Model& model, Data& data, const HandInput& hand, double dt, S
 
 enum class Contacts : std::uint8_t { sought, kept };
 
-void make_step(const Model& model, Data& data, const HandInput& hand, double dt, Contacts contacts,
-               StepOutput& output) {
-    if (model.tool.articulated || data.plan.runs(Stage::detection))
-        local::begin_tool_step(model, data);
-    if (contacts == Contacts::sought)
-        find_contacts(model, data, dt);
+// from the contacts on
+void make_step(const Model& model, Data& data, const HandInput& hand, double dt, StepOutput& output) {
     const bool exact = model.settings.integrator == Integrator::exact;
     if (data.patches.count == 0 && !exact && !data.plan.runs(Stage::free_system)) {
         local::step_freely(model, data, hand, dt, output);
@@ -101,7 +97,7 @@ void make_exact_step(const Model& model, Data& data, const HandInput& hand, doub
         const double rest = next < left ? left - next : 0.0;
         data.half_step *= next / before;
         static_cast<StepFigures&>(output) = StepFigures{};
-        make_step(model, data, local::hand_of_part(hand, rest), next, Contacts::kept, output);
+        make_step(model, data, local::hand_of_part(hand, rest), next, output);
         local::add_part(output, next / dt, sum);
         before = next;
         left = rest;
@@ -118,10 +114,15 @@ void guarded_step(const Model& model, Data& data, const HandInput& hand, double 
     if (model.tool.articulated)
         coordinates = data.linkage.position;
     const bool exact = model.settings.integrator == Integrator::exact;
-    if (exact && model.tool.articulated && contacts == Contacts::sought)
+    if (exact && model.tool.articulated && contacts == Contacts::sought) {
         make_exact_step(model, data, hand, dt, output);
-    else
-        make_step(model, data, hand, dt, contacts, output);
+    } else {
+        if (model.tool.articulated || data.plan.runs(Stage::detection))
+            local::begin_tool_step(model, data);
+        if (contacts == Contacts::sought)
+            find_contacts(model, data, dt);
+        make_step(model, data, hand, dt, output);
+    }
     if (local::ran_away(model, data)) {
         if (!model.tool.articulated)
             coordinates = start;
