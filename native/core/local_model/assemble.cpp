@@ -50,19 +50,6 @@ int first_row(const Data& data, std::int32_t body) {
     return k_none;
 }
 
-const Body& body_of(const Data& data, std::int32_t body) {
-    return body < data.tool.body_count
-               ? data.tool.body[static_cast<std::size_t>(body)]
-               : data.neighbors.body[static_cast<std::size_t>(body - data.tool.body_count)];
-}
-
-std::int32_t movable_of(const Data& data, std::int32_t body) {
-    for (int i = 0; i < data.movable_count; ++i)
-        if (data.movable[static_cast<std::size_t>(i)].body == body - data.tool.body_count)
-            return i;
-    return -1;
-}
-
 // gives rows to the movables that contacts join to the tool
 void choose_island(Data& data) {
     for (int i = 0; i < data.movable_count; ++i)

@@ -19,6 +19,7 @@
 #include <array>
 #include <cmath>
 
+#include "internal.hpp"
 #include "movables.hpp"
 
 namespace haptics::local {
@@ -33,13 +34,6 @@ constexpr double k_answer = 0.2;
 constexpr double k_odd = 0.3;
 
 using Heaps = std::array<std::int32_t, k_max_movables>;
-
-std::int32_t movable_at(const Data& data, std::int32_t body) {
-    for (std::int32_t i = 0; i < data.movable_count; ++i)
-        if (data.movable[static_cast<std::size_t>(i)].body == body - data.tool.body_count)
-            return i;
-    return -1;
-}
 
 // Finds the heaps of movables that touch each other, each named by the first in it, and marks as free those
 // that nothing holds but the tool, here and in the environment.
@@ -58,8 +52,8 @@ void find_free(Data& data, Heaps& heap) {
             const Patch& p = data.patches.patch[static_cast<std::size_t>(i)];
             if (p.body_a < data.tool.body_count || p.body_b < data.tool.body_count)
                 continue;
-            const std::int32_t a = movable_at(data, p.body_a);
-            const std::int32_t b = movable_at(data, p.body_b);
+            const std::int32_t a = movable_of(data, p.body_a);
+            const std::int32_t b = movable_of(data, p.body_b);
             const bool holds =
                 a < 0 || b < 0 || held[static_cast<std::size_t>(a)] || held[static_cast<std::size_t>(b)];
             const std::int32_t first =

@@ -13,6 +13,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "internal.hpp"
+
 namespace haptics::local {
 namespace {
 
@@ -22,12 +24,6 @@ constexpr double k_least = 1.0 / 32.0;
 // room for what forces add to the way to a contact, in terms of the present motion, and m
 constexpr double k_ahead = 2.0;
 constexpr double k_near = 1e-5;
-
-const Body& body_touched(const Data& data, std::int32_t body) {
-    return body < data.tool.body_count
-               ? data.tool.body[static_cast<std::size_t>(body)]
-               : data.neighbors.body[static_cast<std::size_t>(body - data.tool.body_count)];
-}
 
 } // namespace
 
@@ -41,8 +37,8 @@ double part_of_step(const Model& model, const Data& data, double left) {
         const Patch& p = data.patches.patch[static_cast<std::size_t>(i)];
         if (p.body_a >= data.tool.body_count)
             continue;
-        const Body& a = body_touched(data, p.body_a);
-        const Body& b = body_touched(data, p.body_b);
+        const Body& a = body_of(data, p.body_a);
+        const Body& b = body_of(data, p.body_b);
         const bool moves = b.kind != BodyKind::fixed;
         const LinkageModel& linkage = model.tool.linkage;
         double mass = 0.25 * linkage.body[linkage.link[p.body_a].slot].mass;

@@ -5,6 +5,21 @@
 
 namespace haptics::local {
 
+// The body that a patch names, of the tool or a neighbor.
+inline const Body& body_of(const Data& data, std::int32_t body) {
+    return body < data.tool.body_count
+               ? data.tool.body[static_cast<std::size_t>(body)]
+               : data.neighbors.body[static_cast<std::size_t>(body - data.tool.body_count)];
+}
+
+// Index of the movable that a patch names; -1 when the body is none.
+inline std::int32_t movable_of(const Data& data, std::int32_t body) {
+    for (int i = 0; i < data.movable_count; ++i)
+        if (data.movable[static_cast<std::size_t>(i)].body == body - data.tool.body_count)
+            return i;
+    return -1;
+}
+
 // Writes the contacts of `data.patches` and the joints of the tool as rows of `data.system`; `dt` is the
 // length of the coming step.
 void assemble(const Model& model, Data& data, double dt);
