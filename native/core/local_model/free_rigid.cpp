@@ -22,9 +22,7 @@ void step_freely(const Model& model, Data& data, const HandInput& hand, double d
 
     const double x = data.pose.x();
     const double y = data.pose.y();
-    // a tool that is held at its center needs no angle
-    const Vec2 lever = data.grip.point.isZero(0.0) ? data.grip.point : rotate(data.pose.z(), data.grip.point);
-    const RigidGrip grip{lever.x(), lever.y(), data.grip.pose};
+    const RigidGrip grip = rigid_grip(data);
     const Plain3 at{x + grip.x, y + grip.y, data.pose.z()};
     const Plain3 weight{tool.mass * data.gravity.x(), tool.mass * data.gravity.y(), 0.0};
     const Plain3 mass{tool.mass, tool.mass, tool.inertia};

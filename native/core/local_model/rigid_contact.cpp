@@ -445,11 +445,10 @@ bool step_in_contact(const Model& model, Data& data, const HandInput& hand, doub
     RigidContacts contacts(model, data, dt);
     if (!contacts.read())
         return false;
-    const Vec2 lever = data.grip.point.isZero(0.0) ? data.grip.point : rotate(data.pose.z(), data.grip.point);
-    const RigidGrip grip{lever.x(), lever.y(), data.grip.pose};
+    const RigidGrip grip = rigid_grip(data);
     Plain3 v{0.0, 0.0, 0.0};
     const Plain3 none{0.0, 0.0, 0.0};
-    RigidCoupling::Forces forces{none, none};
+    RigidCoupling::Forces forces;
     if (hand.held) {
         const Plain3 at{data.pose.x() + grip.x, data.pose.y() + grip.y, data.pose.z()};
         const RigidCoupling coupling(grip, at, hand.target, hand, dt);

@@ -74,6 +74,13 @@ struct RigidGrip {
     }
 };
 
+// how the hand holds the tool
+inline RigidGrip rigid_grip(const Data& data) {
+    // a tool that is held at its center needs no angle
+    const Vec2 lever = data.grip.point.isZero(0.0) ? data.grip.point : rotate(data.pose.z(), data.grip.point);
+    return {lever.x(), lever.y(), data.grip.pose};
+}
+
 // The equation's matrix.
 struct Arrow {
     double a;
@@ -140,8 +147,8 @@ class RigidCoupling {
     // What the coupling does over a step.
     struct Forces {
         // with all of the springs and dampers, and with what is used of them
-        Plain3 full;
-        Plain3 used;
+        Plain3 full{0.0, 0.0, 0.0};
+        Plain3 used{0.0, 0.0, 0.0};
 
         void tell(StepOutput& output) const {
             output.full_coupling = full.vector();
