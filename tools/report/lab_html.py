@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import bench_table
+import docs_tables
 
 STYLE = """body{font:15px/1.5 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;color:#212529}
 h1{font-size:1.6em}h2{margin-top:2em;border-bottom:1px solid #dee2e6}table{border-collapse:collapse;font-size:13px;margin:1em 0}
@@ -308,6 +309,15 @@ def peers_part(folder: Path) -> str:
     ) + table(rows, PEER_COLUMNS)
 
 
+def doc_tables_part(folder: Path) -> str:
+    parts = []
+    for name, title in docs_tables.TABLES.items():
+        rows = read(folder / f"{name}.csv")
+        if rows:
+            parts.append(f"<h3>{html.escape(title)}</h3>" + table(rows, {column: column for column in rows[0]}))
+    return "\n".join(parts)
+
+
 def page(folder: Path, pictures: dict[str, str]) -> str:
     """The whole page. `pictures`: name to base64 PNG."""
     import peers_html
@@ -322,6 +332,9 @@ def page(folder: Path, pictures: dict[str, str]) -> str:
         ("What a scene leaves out", plan_part(folder)),
         ("Regression of feel", feel_part(folder, pictures)),
     ]
+    shown = doc_tables_part(folder)
+    if shown:
+        sections.append(("Tables of the documentation", shown))
     scene = next((r["value"] for r in read(folder / "scene.csv") if r["what"] == "scene"), "")
     if scene:
         import scene_html

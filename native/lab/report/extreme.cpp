@@ -14,7 +14,8 @@ void write_extreme(const Options& options) {
     add_device_cases(cases);
     CsvFile csv(options.folder / "extreme.csv", {"case", "result", "figure", "value", "bound",
                                                  "not_finite_steps", "force_over_limit", "note"});
-    double done = 0.0;
+    int passes = 0;
+    int failures = 0;
     for (const ExtremeCase& c : cases) {
         ExtremeResult r;
         try {
@@ -26,9 +27,15 @@ void write_extreme(const Options& options) {
         const bool passed = r.value <= c.bound && r.not_finite == 0 && r.force_over_limit <= 1.0 + 1e-9;
         csv.row({c.name, passed ? "pass" : "FAIL", c.figure, r.value, c.bound, static_cast<int>(r.not_finite),
                  r.force_over_limit, r.note});
-        show_progress("extreme cases", ++done / static_cast<double>(cases.size()));
+        ++(passed ? passes : failures);
+        if (!passed)
+            std::printf("FAIL: %s: %s %g, bound %g%s%s\n", c.name.c_str(), c.figure.c_str(), r.value, c.bound,
+                        r.note.empty() ? "" : "; ", r.note.c_str());
+        show_progress("extreme cases",
+                      static_cast<double>(passes + failures) / static_cast<double>(cases.size()));
     }
     csv.finish();
+    std::printf("%d passed, %d failed\n", passes, failures);
 }
 
 } // namespace haptics::report

@@ -1,6 +1,5 @@
-/// The same random states through all three methods: what fails, how often, how badly. With the environment
-/// variable HAPTICS_COLLISION_TABLE set to a file name the table is written there (Markdown):
-///     HAPTICS_COLLISION_TABLE=build/collision_table.md haptics_tests -tc='collision methods side by side*'
+/// The same random states through all three methods: what fails, how often, how badly. The table of
+/// docs/physics.md comes from here (support/doc_table.hpp).
 
 #include <haptics/shared/collision_scenes.hpp>
 #include <haptics/shared/dense_algebra.hpp>
@@ -9,12 +8,12 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "support/doc_table.hpp"
 
 namespace {
 
@@ -146,8 +145,7 @@ TEST_CASE("collision methods side by side: the paper's adds energy, pulls and st
         }
     }
     MESSAGE("\n" << table);
-    if (const char* file = std::getenv("HAPTICS_COLLISION_TABLE"))
-        std::ofstream(file) << table;
+    write_doc_table("collision_methods", [&](std::ostream& out) { out << table; });
 
     // one contact: eq. (5) adds energy in about one state of seven; the equality is then the right answer
     CHECK(paper[0].share(paper[0].growing) > 0.08);

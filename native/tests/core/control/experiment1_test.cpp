@@ -1,13 +1,13 @@
 // Where experiment 1 tells the two contact models apart, and where it does not.
-// HAPTICS_EXPERIMENT1_TABLE=<file> writes the whole table as Markdown; the test alone looks at its corners.
+// The test looks at the corners of the table in docs/experiment1.md (support/doc_table.hpp).
 
 #include <haptics/shared/experiment1.hpp>
 
 #include <doctest/doctest.h>
 
-#include <cstdlib>
-#include <fstream>
 #include <iomanip>
+
+#include "support/doc_table.hpp"
 
 using namespace haptics;
 using shared::Experiment1Options;
@@ -24,8 +24,7 @@ Outcome run(ContactMode contact, double tool, double gain) {
     return shared::outcome_of(o);
 }
 
-void write_table(const char* path) {
-    std::ofstream out(path);
+void write_table(std::ostream& out) {
     out << "| tool kg | coupling N/m | contact | settles s | swing N | swing of the handle µm | energy "
            "created mJ |\n"
            "|---|---|---|---|---|---|---|\n"
@@ -49,8 +48,7 @@ void write_table(const char* path) {
 } // namespace
 
 TEST_CASE("experiment 1 tells the contact models apart for a heavy tool, and not for a soft coupling") {
-    if (const char* path = std::getenv("HAPTICS_EXPERIMENT1_TABLE"))
-        write_table(path);
+    write_doc_table("experiment1_settling", write_table);
     const Outcome penalty = run(ContactMode::penalty, 1.0, 1.0);
     const Outcome impulse = run(ContactMode::penalty_impulse, 1.0, 1.0);
     CHECK(penalty.settling < 0.0);

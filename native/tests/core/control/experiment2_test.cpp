@@ -1,6 +1,7 @@
 // Experiment 2: how closely the handle follows the linkage, and how much the linkage with a device moves like
 // the linkage without one.
-// HAPTICS_EXPERIMENT2=<folder> writes table.md, and free.csv and contact.csv with every step of a swift run.
+// HAPTICS_EXPERIMENT2=<folder> writes free.csv and contact.csv with every step of a swift run; the table of
+// docs/experiment2.md comes from here too (support/doc_table.hpp).
 
 #include <haptics/shared/experiment2.hpp>
 
@@ -11,6 +12,8 @@
 #include <fstream>
 #include <iomanip>
 #include <string>
+
+#include "support/doc_table.hpp"
 
 using namespace haptics;
 using shared::Experiment2Options;
@@ -72,17 +75,16 @@ void write_row(std::ostream& out, const char* form, Experiment2Options o) {
     const Experiment2Outcome r = run_experiment2(o);
     out << "| " << std::setprecision(2) << o.frequency << " | " << form << " | "
         << (o.observer ? "observed" : "measured") << " | " << (o.obstacles ? "yes" : "no") << " | "
-        << o.mass_ratio << " | " << o.friction << " | " << std::setprecision(0) << r.stiffness << " | "
-        << std::setprecision(2) << (o.hand_force == HandForce::transparent ? r.hidden.alone.x() : 0.0)
-        << " | " << std::setprecision(1) << r.peak * 1e6 << " | " << r.mean * 1e6 << " | " << r.motion * 1e6
-        << " |\n";
+        << o.mass_ratio << " | " << (o.observer ? o.mass_error : 0.0) << " | " << o.friction << " | "
+        << std::setprecision(0) << r.stiffness << " | " << std::setprecision(2)
+        << (o.hand_force == HandForce::transparent ? r.hidden.alone.x() : 0.0) << " | "
+        << std::setprecision(1) << r.peak * 1e6 << " | " << r.mean * 1e6 << " | " << r.motion * 1e6 << " |\n";
 }
 
-void write_table(const std::string& path) {
-    std::ofstream out(path);
-    out << "| swing Hz | hand force | known by | obstacles | mass assumed / true | friction N s/m | coupling "
-           "N/m | hidden | peak µm | RMS µm | motion error RMS µm |\n"
-           "|---|---|---|---|---|---|---|---|---|---|---|\n"
+void write_table(std::ostream& out) {
+    out << "| swing Hz | hand force | known by | obstacles | mass assumed / true | error provided for | "
+           "friction N s/m | coupling N/m | hidden | peak µm | RMS µm | motion error RMS µm |\n"
+           "|---|---|---|---|---|---|---|---|---|---|---|---|\n"
         << std::fixed;
     for (Experiment2Options o : {Experiment2Options{}, slowly()})
         for (const HandForce form : {HandForce::combined, HandForce::transparent}) {
@@ -109,8 +111,8 @@ void write_table(const std::string& path) {
 TEST_SUITE("experiment 2") {
     TEST_CASE("device known exactly, swift motion: the handle follows within 0.15 mm, the linkage moves as "
               "without a device within 0.5 mm") {
+        write_doc_table("experiment2_devices", write_table);
         if (const char* folder = std::getenv("HAPTICS_EXPERIMENT2")) {
-            write_table(std::string(folder) + "/table.md");
             write_run(std::string(folder) + "/free.csv", observed({}, 1.0));
             Experiment2Options touching = observed({}, 1.0);
             touching.obstacles = true;

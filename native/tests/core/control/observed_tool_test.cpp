@@ -1,6 +1,6 @@
 // The whole loop with an observer: what the design computed is what the loop does, and the steady forces of
 // light and heavy tools hold with the device's mass wrong by a quarter.
-// HAPTICS_STIFFNESS_TABLE=<file> writes the handle's stiffness against a hard wall as Markdown.
+// The handle's stiffness against a hard wall in docs/control.md comes from here (support/doc_table.hpp).
 
 #include <haptics/core/control/coupling_design.hpp>
 #include <haptics/shared/observed_tool.hpp>
@@ -11,11 +11,11 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <cstdlib>
-#include <fstream>
 #include <iomanip>
 #include <numbers>
 #include <string>
+
+#include "support/doc_table.hpp"
 
 using namespace haptics;
 using shared::ObservedTool;
@@ -122,12 +122,9 @@ ObservedToolOptions direct(int delay_steps) {
     return o;
 }
 
-void write_stiffness_table(const char* path) {
-    std::ofstream out(path);
-    REQUIRE(out.good());
-    out << "| delay steps | coupling | encoder µm | noise N | coupling N/m | 5 Hz N/m | over direct | 30 Hz "
-           "N/m "
-           "| over direct |\n|---|---|---|---|---|---|---|---|---|\n"
+void write_stiffness_table(std::ostream& out) {
+    out << "| delay steps | coupling | encoder µm | noise N | coupling N/m | 5 Hz N/m | over direct, 5 Hz | "
+           "30 Hz N/m | over direct, 30 Hz |\n|---|---|---|---|---|---|---|---|---|\n"
         << std::fixed << std::setprecision(0);
     for (const int delay : {0, 1}) {
         const ObservedToolOptions baseline = direct(delay);
@@ -230,8 +227,7 @@ TEST_SUITE("observed tool") {
             CHECK(handle_stiffness(virtual_coupling, 30.0) > (delay == 0 ? 10.0 : 3.5) * fast);
             CHECK(handle_stiffness(four_channel, 30.0) > (delay == 0 ? 6.0 : 2.5) * fast);
         }
-        if (const char* path = std::getenv("HAPTICS_STIFFNESS_TABLE"))
-            write_stiffness_table(path);
+        write_doc_table("handle_stiffness", write_stiffness_table);
     }
 
     TEST_CASE("a free tool as heavy as the device weighs less than both together, and moves without clicks") {

@@ -1,14 +1,12 @@
 // Late geometry against the truth: a wall in known motion, seen through a line that is slow, late, uneven or
-// lossy. The table of docs/physics.md is written with
-//     HAPTICS_LATE_TABLE=build/late_geometry.md haptics_tests -tc='late geometry: the table'
+// lossy. The table of docs/late-geometry.md comes from here (support/doc_table.hpp).
 
 #include <doctest/doctest.h>
 
-#include <cstdlib>
-#include <fstream>
 #include <iomanip>
 
 #include "late_world.hpp"
+#include "support/doc_table.hpp"
 
 using namespace haptics;
 using namespace haptics::late;
@@ -100,17 +98,14 @@ void write_row(std::ostream& out, const Line& line, const Press& press, double s
 } // namespace
 
 TEST_CASE("late geometry: the table") {
-    const char* path = std::getenv("HAPTICS_LATE_TABLE");
-    if (path == nullptr)
-        return;
-    std::ofstream out(path);
-    out << "| line | Hz | delay, ms | jitter, ms | lost, % | constant | sine | swing | cam | jump |\n"
-           "|---|---|---|---|---|---|---|---|---|---|\n"
-        << std::setprecision(3);
-    for (const auto& lines : {even_lines(), uneven_lines(), lossy_lines()})
-        for (const Line& line : lines)
-            write_row(out, line, press_of(15000.0, 20.0, 2.0), 4.0);
-    REQUIRE(out.good());
+    write_doc_table("late_geometry", [](std::ostream& out) {
+        out << "| line | Hz | delay, ms | jitter, ms | lost, % | constant | sine | swing | cam | jump |\n"
+               "|---|---|---|---|---|---|---|---|---|---|\n"
+            << std::setprecision(3);
+        for (const auto& lines : {even_lines(), uneven_lines(), lossy_lines()})
+            for (const Line& line : lines)
+                write_row(out, line, press_of(15000.0, 20.0, 2.0), 4.0);
+    });
 }
 
 TEST_CASE("an update changes the force by no more than 7 % or 0.05 N beyond what the motion does") {
