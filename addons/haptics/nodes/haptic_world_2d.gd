@@ -150,13 +150,13 @@ var coupling_rotation_stiffness: float = 0.0
 ## Damping of the coupling in rotation, N m s/rad; 0 chooses it.
 @export_range(0.0, 1.0, 0.0001, "or_greater", "suffix:N m s/rad")
 var coupling_rotation_damping: float = 0.0
-## Longest window of the velocity estimate, samples: longer is quieter and lags more.
-@export_range(1, 63) var velocity_window: int = 2
+## Longest window of the velocity estimate, samples: longer is quieter and lags more; 0 chooses it.
+@export_range(0, 63) var velocity_window: int = 0
 ## Estimates the handle's motion and the force of the hand with a model of the device, and chooses
 ## the coupling that goes with it: stiffer walls, and four channels without a force
 ## sensor. Needs a device whose mass is known to within [member observer_mass_error].
 @export var observer: bool = false
-## Force noise that coarse encoders may cause (standard deviation); more allows a stiffer coupling.
+## Force noise that a coarse encoder may cause (deviation); more allows a stiffer coupling.
 @export_range(0.01, 1.0, 0.01, "or_greater", "suffix:N") var observer_noise: float = 0.05
 ## Largest relative error of the device's mass that has to stay stable.
 @export_range(0.0, 0.5, 0.01) var observer_mass_error: float = 0.25

@@ -19,8 +19,8 @@ std::vector<FigureError> validate(const SessionSettings& s) {
         check.range("reading_error", s.reading_error(i), 0.0, 0.1, "m", "Half an encoder step.");
     }
     check.range("device_patience", s.device_patience, 0.002, 1.0, "s", "0.02 is the default.");
-    check.range("velocity_window", static_cast<double>(s.velocity_window), 1.0, 63.0, "samples",
-                "2 is the default.");
+    check.range("velocity_window", static_cast<double>(s.velocity_window), 0.0, 63.0, "samples",
+                "0 chooses it from the encoder.");
     check.range("observer.delay", s.observer.delay, 0.0, HandleObserver::k_most_delay * s.step, "s",
                 "The time from a reading to the force that answers it.");
     check.range("observer.bandwidth", s.observer.bandwidth, 0.0, 1e5, "rad/s", "0 chooses it.");
@@ -29,6 +29,7 @@ std::vector<FigureError> validate(const SessionSettings& s) {
     check.range("observer_noise", s.observer.noise, 0.001, 10.0, "N", "0.05 is the default.");
     check.range("observer_mass_error", s.observer.mass_error, 0.0, 0.5, "", "0.25 is the default.");
     check.range("hidden_inertia", s.hidden_inertia, 0.0, 0.95, "", "0 leaves all of it to the hand.");
+    check.range("sample_period", s.sample_period, 0.0, 0.02, "s", "0 for a device as fast as the loop.");
     check.range("device_delay", s.device_delay, 0.0, 1.0, "s", "Most devices add less than 0.001 s.");
     return check.take();
 }
@@ -51,7 +52,7 @@ Session::Session(const SessionSettings& settings, const Model& model, const Outp
     , gate_(gate)
     , device_(device)
     , care_(settings.care, gate, settings.reading_error)
-    , velocity_(settings.reading_error, settings.velocity_window)
+    , velocity_(settings.reading_error)
     , passivity_(settings.reading_error)
     , placement_(HandPlacement{settings.mapping, false, 0.0}) {
     reset(*model_, *data_, start);
@@ -74,11 +75,20 @@ void Session::choose_gains() {
     const bool chosen = !gains_.stiffness.isZero(0.0) || !gains_.damping.isZero(0.0);
     gains_follow_scale_ = !chosen;
     hidden_ = {Vec3::Constant(settings_.hidden_inertia), settings_.hidden_inertia};
-    if (settings_.observer.enabled && observe(chosen))
-        return;
-    if (!chosen)
-        gains_ = default_gains(device_mass_, loop_mobility(), settings_.step, settings_.device_delay,
-                               settings_.velocity_window);
+    VelocityWindow window;
+    const bool observed = settings_.observer.enabled && observe(chosen);
+    if (!observed && !chosen) {
+        const double period = std::max(settings_.step, settings_.sample_period);
+        if (settings_.velocity_window > 0)
+            window = {settings_.velocity_window, settings_.velocity_window};
+        else if (settings_.coupling != Coupling::direct)
+            window = choose_velocity_window(device_mass_, loop_mobility(), period, settings_.device_delay,
+                                            2.0 * settings_.reading_error, settings_.observer.noise,
+                                            settings_.observer.noise * ObserverSettings::k_arm);
+        gains_ = default_gains(device_mass_, loop_mobility(), period, settings_.device_delay, window.lag);
+    }
+    velocity_ = VelocityEstimator(settings_.reading_error,
+                                  settings_.velocity_window > 0 ? settings_.velocity_window : window.longest);
 }
 
 // false when no coupling holds with what the device is said to be

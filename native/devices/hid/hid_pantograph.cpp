@@ -220,11 +220,8 @@ Vec3 HidPantograph::reading_error() const {
     return {half * reach, half * reach, lever > 0.0 ? 2.0 * half * reach / lever : half};
 }
 
-// Velocity, computing and holding take (3 + n) / 2 periods; where the device's are longer than the loop's,
-// they count. A frame more brings the report here and the command there.
-double HidPantograph::delay(double step, int window) const {
-    const double interval = identity_.interval_us * 1.0e-6;
-    return 0.5 * (3.0 + window) * std::max(0.0, interval - step) + interval;
+double HidPantograph::interval() const {
+    return identity_.interval_us * 1.0e-6;
 }
 
 HidCounts HidPantograph::published_counts() const {

@@ -210,7 +210,8 @@ void HapticWorld::begin(bool realtime, double record_seconds, Problems& problems
     model.tool = *tool_;
     model.settings = settings_.model;
     SessionSettings session = settings_.session;
-    session.device_delay = device_->delay(session);
+    session.device_delay = device_->delay();
+    session.sample_period = device_->sample_period();
     session.reading_error = device_->reading_error();
     session.care = device_options_->care;
     session.care.compensation.delay = device_->latency(session.step);

@@ -77,9 +77,8 @@ class SimulatedDevice final : public WorldDevice {
     }
     [[nodiscard]] double simulation_ns() const override { return timed_.mean_ns(); }
     [[nodiscard]] const PantographKinematics& kinematics() const override { return device_.kinematics(); }
-    [[nodiscard]] double delay(const SessionSettings& /*session*/) const override {
-        return options_.command_delay;
-    }
+    [[nodiscard]] double delay() const override { return options_.command_delay; }
+    [[nodiscard]] double sample_period() const override { return 0.0; }
     [[nodiscard]] double latency(double step) const override {
         return options_.command_delay + step * (options_.command_delay_steps + options_.reading_delay_steps);
     }
@@ -119,11 +118,9 @@ class HidDevice final : public WorldDevice {
     DevicePort& port() override { return *device_; }
     [[nodiscard]] const PantographKinematics& kinematics() const override { return device_->kinematics(); }
     [[nodiscard]] Vec3 reading_error() const override { return device_->reading_error(); }
-    [[nodiscard]] double delay(const SessionSettings& session) const override {
-        return device_->delay(session.step, session.velocity_window);
-    }
-    // what is left for a loop that has no share in it
-    [[nodiscard]] double latency(double /*step*/) const override { return device_->delay(1.0, 0); }
+    [[nodiscard]] double delay() const override { return device_->interval(); }
+    [[nodiscard]] double sample_period() const override { return device_->interval(); }
+    [[nodiscard]] double latency(double /*step*/) const override { return device_->interval(); }
     void home(Problems& problems) override {
         const std::string problem = device_->home_here();
         if (!problem.empty())

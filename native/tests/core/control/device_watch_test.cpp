@@ -49,6 +49,7 @@ struct Rig {
         SessionSettings s;
         s.step = 1.0 / rate;
         s.arm_at_start = arm_at_start;
+        s.velocity_window = 2;
         OutputGate gate{SafetyLimits{}};
         session = std::make_unique<Session>(s, shared::box_tool(), gate, device, Pose(0.0, 0.05, 0.0));
     }
@@ -199,9 +200,7 @@ TEST_CASE("the model steps at 4 kHz on a device of 1 kHz: a push of 2 N comes ba
     s.step = 0.25e-3;
     s.coupling = Coupling::virtual_coupling;
     s.reading_error = Vec3(0.5e-6, 0.5e-6, 0.5e-5);
-    // what a slower device adds to the loop (coupling.cpp): (3 + n) / 2 of its own period in place of the
-    // loop's
-    s.device_delay = 0.5 * (3 + s.velocity_window) * (1e-3 - s.step);
+    s.sample_period = 1e-3;
     OutputGate gate(SafetyLimits{}, device.inner.kinematics());
     Session session(s, shared::box_tool(), gate, device, Pose(0.0, 0.03, 0.0));
     session.take(*shared::floor_of(1));

@@ -84,7 +84,8 @@ inline std::unique_ptr<Session> session_on(HidPantograph& port, double rate, dou
     SessionSettings s;
     s.step = 1.0 / rate;
     s.reading_error = port.reading_error();
-    s.device_delay = port.delay(s.step, s.velocity_window);
+    s.device_delay = port.interval();
+    s.sample_period = port.interval();
     s.device_patience = patience;
     OutputGate gate(SafetyLimits{}, port.kinematics());
     auto session = std::make_unique<Session>(s, shared::box_tool(), gate, port, Pose(0.0, 0.03, 0.0));

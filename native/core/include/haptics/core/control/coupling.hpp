@@ -38,10 +38,25 @@ struct CouplingGains {
 
 /// Largest coupling that the sampled loop holds with a comfortable margin (derivation in coupling.cpp).
 /// `device_mass` is the handle's mass matrix in scene axes; `mobility` the proxy's J_h D^-1 J_h^T when forces
-/// are fed forward (four channels), zero otherwise; `step` the loop's period in s; `delay` what the device
-/// adds, in s; `velocity_window` that of the velocity estimate, samples.
-CouplingGains default_gains(const Mat3& device_mass, const Mat3& mobility, double step, double delay,
+/// are fed forward (four channels), zero otherwise; `period` that of the device's samples or of the loop, the
+/// longer one, s; `delay` what the device adds, in s; `velocity_window` that of the velocity estimate,
+/// samples.
+CouplingGains default_gains(const Mat3& device_mass, const Mat3& mobility, double period, double delay,
                             int velocity_window);
+
+/// Window of the velocity estimate, samples.
+struct VelocityWindow {
+    int longest{2};
+    /// What default_gains has to provide for: the longest is taken only where nothing but noise moves.
+    int lag{2};
+};
+
+/// The shortest window in which a step of the encoder, come and gone, makes a force whose standard deviation,
+/// through the damping of default_gains, is at most `noise` N (and `noise_torque` N m); at most 63 samples.
+/// `encoder_step` per coordinate, m, m, rad.
+VelocityWindow choose_velocity_window(const Mat3& device_mass, const Mat3& mobility, double period,
+                                      double delay, const Vec3& encoder_step, double noise,
+                                      double noise_torque);
 
 /// Mass of the handle in the direction in which it is lightest, kg; the coupling feels the same all around.
 double lightest_mass(const Mat3& device_mass);

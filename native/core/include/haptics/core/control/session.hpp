@@ -56,12 +56,15 @@ struct SessionSettings {
     bool passivity_control{false};
     /// Delay that the device adds, s, >= 0; used to choose the gains without an observer.
     double device_delay{0.0};
+    /// Period of the device's samples where it is longer than the loop's, s, >= 0; used likewise.
+    double sample_period{0.0};
     /// Largest reading error per coordinate (half an encoder step), m, m, rad; used to estimate velocity.
     Vec3 reading_error{5e-6, 5e-6, 5e-5};
     /// The output faults when the device gave no new sample for so long, s, 0.002 to 1.
     double device_patience{0.02};
-    /// Longest window of the velocity estimate, samples, 1 to 63: a longer one is quieter and lags more.
-    int velocity_window{2};
+    /// Longest window of the velocity estimate, samples, 1 to 63: a longer one is quieter and lags more. 0
+    /// chooses it by `observer.noise` together with the gains, and 2 where the gains are given.
+    int velocity_window{0};
     /// Encoder check, and compensation of the device's own weight, friction and inertia (off by default).
     DeviceCareSettings care;
     /// Arm by itself as soon as the handle rests in free space. Faults still need a re-arm.

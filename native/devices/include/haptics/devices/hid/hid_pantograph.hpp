@@ -44,9 +44,8 @@ class HidPantograph final : public DevicePort {
     [[nodiscard]] const PantographKinematics& kinematics() const { return kinematics_; }
     /// Largest error of a reading per coordinate, for the velocity estimate: half a count seen at the handle.
     [[nodiscard]] Vec3 reading_error() const;
-    /// What the device adds to a loop of `step` s with a velocity window of `window` samples, s; for the
-    /// coupling's gains (derivation in native/core/control/coupling.cpp).
-    [[nodiscard]] double delay(double step, int window) const;
+    /// From report to report, s; one more passes until a report is here and its command there.
+    [[nodiscard]] double interval() const;
     /// What the device is.
     [[nodiscard]] const HidIdentity& identity() const { return identity_; }
     [[nodiscard]] const std::string& name() const { return name_; }

@@ -23,9 +23,11 @@ class WorldDevice {
 
     virtual DevicePort& port() = 0;
     [[nodiscard]] virtual const PantographKinematics& kinematics() const = 0;
-    /// Largest error of a reading per coordinate, and delay that it adds to such a loop (s).
+    /// Largest error of a reading per coordinate.
     [[nodiscard]] virtual Vec3 reading_error() const = 0;
-    [[nodiscard]] virtual double delay(const SessionSettings& session) const = 0;
+    /// Delay that it adds to the loop, and period of its samples, 0 for one as fast as the loop (s).
+    [[nodiscard]] virtual double delay() const = 0;
+    [[nodiscard]] virtual double sample_period() const = 0;
     /// How late a force acts and how old a reading is, together, in a loop of `step` s; for the compensation
     /// (s).
     [[nodiscard]] virtual double latency(double step) const = 0;
