@@ -45,6 +45,17 @@ double read_finite(DictionaryReader& r, const char* key, Problems& problems) {
     return 0.0;
 }
 
+// the same for three numbers
+Vec3 read_finite_vector(DictionaryReader& r, const char* key, Problems& problems) {
+    const Vec3 given = r.vec3(key, Vec3::Zero());
+    if (given.allFinite())
+        return given;
+    problems.add(r.place() + key + " is (" + std::to_string(given.x()) + ", " + std::to_string(given.y()) +
+                 ", " + std::to_string(given.z()) +
+                 "), which is not a number. Give the first link a real one.");
+    return Vec3::Zero();
+}
+
 // appends the shapes of one link, and says when they are too many
 void add_shapes(const BodySpec& body, BodySet& shape, Problems& problems) {
     const auto count = static_cast<std::int32_t>(body.pieces.size());
@@ -107,11 +118,8 @@ LinkageTool read_linkage_tool(const Dictionary& from, Problems& problems) {
     std::vector<Vec2> centers;
     DictionaryReader r(from, "tool.", problems);
     spec.base = r.flag("grounded", true) ? BaseKind::grounded : BaseKind::floating;
-    start.base = r.vec3("base", Vec3::Zero());
-    start.base_velocity = r.vec3("base_velocity", Vec3::Zero());
-    if (!start.base.allFinite() || !start.base_velocity.allFinite())
-        problems.add("tool.base or tool.base_velocity is not a number. Give the first link a real place and "
-                     "velocity.");
+    start.base = read_finite_vector(r, "base", problems);
+    start.base_velocity = read_finite_vector(r, "base_velocity", problems);
     const Array links = r.array("links");
     if (links.size() > k_max_links) {
         problems.add("The linkage has " + std::to_string(links.size()) + " links, at most " +
