@@ -25,13 +25,20 @@
 namespace haptics::local {
 namespace {
 
-// w, 1/s, and over how long the mean of u is taken, s
+// w, 1/s, on a good line, and w t on a bad one; over how many 1/w the mean of u is taken; most of c' by g
 constexpr double k_lift = 1.5;
-constexpr double k_memory = 1.0;
+constexpr double k_quiet = 0.13;
+constexpr double k_memory = 1.5;
+constexpr double k_most = 0.25;
 // weight of the last change of velocity in the sums that tell whether a body is free, and the share of it
 // that may be odd
 constexpr double k_answer = 0.2;
 constexpr double k_odd = 0.3;
+
+// w; the mean of what is to be heard is g times the mean time until the next report is
+double lift_rate(double untold, double fall) {
+    return untold > 0.0 ? std::min(k_lift, k_quiet * fall / untold) : k_lift;
+}
 
 using Heaps = std::array<std::int32_t, k_max_movables>;
 
@@ -96,12 +103,14 @@ void lift(const Heaps& heap, double dt, Data& data) {
             mean += own * Vec3(-m.lead.head<2>().dot(down), m.lift, m.mean_untold);
         }
         mean /= mass;
-        const double rate = k_lift * (k_lift * mean[0] + 2.0 * (mean[2] - mean[1]));
+        const double w = lift_rate(mean[2], fall);
+        const double most = k_most * fall;
+        const double rate = std::clamp(w * (w * mean[0] + 2.0 * (mean[2] - mean[1])), -most, most);
         for (std::size_t i = first; i < count; ++i) {
             MovableState& m = data.movable[i];
             if (heap[i] != heap[first])
                 continue;
-            const double change = dt * (rate + 2.0 * k_lift * (mean[1] - m.lift));
+            const double change = dt * (rate + 2.0 * w * (mean[1] - m.lift));
             m.lift += change;
             add_velocity(m, Twist(change * down.x(), change * down.y(), 0.0));
         }
@@ -124,8 +133,9 @@ void watch_answer(const Body& seen, const MovableBelief& echo, const Neighborhoo
     m.seen_given = echo.given;
 }
 
-void hear(double untold, double tick, MovableState& m) {
-    m.mean_untold += std::min(1.0, tick / k_memory) * (untold - m.mean_untold);
+void hear(double untold, double tick, double fall, MovableState& m) {
+    const double part = std::min(1.0, tick * lift_rate(m.mean_untold, fall) / k_memory);
+    m.mean_untold += part * (untold - m.mean_untold);
 }
 
 void lift_carried(Data& data, double dt) {

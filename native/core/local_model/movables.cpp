@@ -93,7 +93,7 @@ Twist present_surprise(MovableState& m, const Body& seen, const MovableBelief& e
             fall > 0.0 ? std::clamp(-m.push.head<2>().dot(gravity) / (fall * fall), 0.0, 1.0) * m.lag * fall
                        : 0.0;
     else if (fall > 0.0)
-        hear(-untold.head<2>().dot(gravity) / fall, n.tick, m);
+        hear(-untold.head<2>().dot(gravity) / fall, n.tick, fall, m);
     if (fall > 0.0)
         untold.head<2>() += m.lift / fall * gravity;
     if (m.free) {
@@ -182,11 +182,6 @@ void forget_movables(Data& data, std::uint64_t echo_step) {
             data.movable[static_cast<std::size_t>(kept++)] = m;
     }
     data.movable_count = kept;
-}
-
-void add_pose(MovableState& m, const Pose& pose) {
-    m.belief.pose += pose;
-    m.belief.corrected_pose += pose;
 }
 
 // blends in what is pending

@@ -15,13 +15,18 @@ void move_movables(Data& data, double dt);
 // Compares how the environment changed the body's velocity since the last snapshot with what it was told.
 void watch_answer(const Body& seen, const MovableBelief& echo, const Neighborhood& n, MovableState& m);
 
-// Takes in that the environment has yet to hear of `untold` m/s of the weight that the tool bears.
-void hear(double untold, double tick, MovableState& m);
+// Takes in that the environment has yet to hear of `untold` m/s of the weight that the tool bears; `fall` is
+// gravity, m/s^2.
+void hear(double untold, double tick, double fall, MovableState& m);
 
 // Brings the environment up to what the tool bears, see carried.cpp.
 void lift_carried(Data& data, double dt);
 
-// A correction of the velocity.
+// Corrections of the pose and of the velocity.
+inline void add_pose(MovableState& m, const Pose& pose) {
+    m.belief.pose += pose;
+    m.belief.corrected_pose += pose;
+}
 inline void add_velocity(MovableState& m, const Twist& velocity) {
     m.belief.velocity += velocity;
     m.belief.corrected_velocity += velocity;

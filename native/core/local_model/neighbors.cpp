@@ -155,6 +155,24 @@ bool follow(const PathPoint& from, const Track& before, Track& t) {
     return true;
 }
 
+// whether the model moves that body itself, so that it is shown where the model has it
+bool is_own(const Body& body, const Track& before) {
+    return body.kind == BodyKind::movable && !body.jointed && !before.driven;
+}
+
+// Of what the model moves, what the scene has put elsewhere is there at once, and new. How far the scene is
+// from the model counts, not from where it was: it may have been told a lot since.
+void follow_moved_away(double gap, std::array<bool, k_max_bodies>& fresh, Data& data) {
+    for (std::int32_t i = 0; i < data.movable_count; ++i) {
+        MovableState& m = data.movable[static_cast<std::size_t>(i)];
+        if (m.body < 0 || m.pending_pose.head<2>().norm() <= k_teleport * gap)
+            continue;
+        add_pose(m, m.pending_pose);
+        m.pending_pose.setZero();
+        fresh[static_cast<std::size_t>(m.body)] = true;
+    }
+}
+
 // whether there is what the plan of the scene does not know of: what fades, a fixed body on its way, a
 // movable one that found no place
 bool is_beyond_plan(const Neighborhood& n, const Data& data) {
@@ -180,6 +198,10 @@ void take_neighborhood(const Neighborhood& n, Data& data) {
         const std::int32_t old = find_body(data.neighbors, n.bodies.body[k].id, i);
         const auto was = static_cast<std::size_t>(old);
         fresh[k] = old < 0 || !follow(shown_now(data, was), data.track[was], t);
+        if (fresh[k] && old >= 0 && is_own(n.bodies.body[k], data.track[was])) {
+            fresh[k] = false;
+            t.presence = data.track[was].presence;
+        }
     }
     for (std::int32_t i = 0; i < data.neighbors.body_count; ++i)
         old_id[static_cast<std::size_t>(i)] = data.neighbors.body[static_cast<std::size_t>(i)].id;
@@ -191,6 +213,7 @@ void take_neighborhood(const Neighborhood& n, Data& data) {
     append_leavers(data);
     data.neighbor_cache.known = false;
     data.sequence = n.sequence;
+    const double gap = std::max(n.time - data.snapshot_time, n.tick);
     data.snapshot_time = n.time;
     data.tick = n.tick;
     data.gravity = n.gravity;
@@ -198,6 +221,7 @@ void take_neighborhood(const Neighborhood& n, Data& data) {
         data.tool.body[static_cast<std::size_t>(i)].mask = ~n.tool_ignores[static_cast<std::size_t>(i)];
     data.plan = n.plan;
     take_movables(n, data);
+    follow_moved_away(gap, fresh, data);
     rename_patches(old_id, data);
     place_neighbors(data, 0.0);
     move_movables(data, 0.0);

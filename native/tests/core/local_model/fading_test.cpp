@@ -160,6 +160,36 @@ TEST_CASE("a body that appears around the tool fades in, pushes it out gently an
             }
 }
 
+TEST_CASE("a movable body that the scene puts where the tool is fades in and pushes it out gently") {
+    FadingScene s;
+    s.hand.target.y() = 0.0097;
+    Body& floor = s.add(7, BodyKind::movable, k_floor, shared::paper_surface(), Pose(0.0, -0.2, 0.0));
+    floor.mass = 1e3;
+    floor.inertia = 10.0;
+    s.publish();
+    s.run(500);
+    REQUIRE(s.data->movable_count == 1);
+    s.publish();
+    s.run(17);
+    s.next->echo_count = 1;
+    s.next->echo[0] = s.data->movable[0].belief;
+    floor.pose = Pose::Zero();
+    s.publish();
+    CHECK(s.data->neighbors.body[0].pose.y() == doctest::Approx(0.0).epsilon(1e-12));
+    CHECK(s.data->track[0].presence == 0.0);
+    s.watch();
+    double fastest = 0.0;
+    for (int i = 0; i < 60; ++i) {
+        s.run(1);
+        fastest = std::max(fastest, s.data->velocity.y());
+    }
+    CHECK(s.hits == 0);
+    CHECK(s.largest < 0.05);
+    CHECK(fastest < 0.02);
+    s.run(1000);
+    CHECK(s.last.y() == doctest::Approx(15000.0 * s.out.max_penetration).epsilon(1e-3));
+}
+
 TEST_CASE("a body that appears free of the tool is whole when it is hit") {
     FadingScene s;
     s.hand.held = false;
