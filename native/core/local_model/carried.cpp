@@ -84,25 +84,31 @@ void find_free(Data& data, Heaps& heap) {
 // Brings the environment up to what the tool bears: the heap weighs so much more or less for a while, by too
 // little to be felt.
 void lift(const Heaps& heap, double dt, Data& data) {
-    const double fall = data.gravity.norm();
-    if (fall == 0.0 || dt <= 0.0)
+    if (dt <= 0.0)
         return;
-    const Vec2 down = data.gravity / fall;
     const auto count = static_cast<std::size_t>(data.movable_count);
     for (std::size_t first = 0; first < count; ++first) {
         if (heap[first] != static_cast<std::int32_t>(first) || !data.movable[first].free)
             continue;
         double mass = 0.0;
-        Vec3 mean = Vec3::Zero(); // of lead, lift, and what is to be heard
+        Vec2 weight = Vec2::Zero();
+        Vec2 lead = Vec2::Zero();
+        Vec2 speed = Vec2::Zero(); // lift, and what is to be heard
         for (std::size_t i = first; i < count; ++i) {
             const MovableState& m = data.movable[i];
             if (heap[i] != heap[first])
                 continue;
-            const double own = data.neighbors.body[static_cast<std::size_t>(m.body)].mass;
-            mass += own;
-            mean += own * Vec3(-m.lead.head<2>().dot(down), m.lift, m.mean_untold);
+            const Body& b = data.neighbors.body[static_cast<std::size_t>(m.body)];
+            mass += b.mass;
+            weight += b.mass * fall_of(data.gravity, b);
+            lead += b.mass * m.lead.head<2>();
+            speed += b.mass * Vec2(m.lift, m.mean_untold);
         }
-        mean /= mass;
+        const double fall = weight.norm() / mass;
+        if (fall == 0.0)
+            continue;
+        const Vec2 down = weight.normalized();
+        const Vec3 mean = Vec3(-lead.dot(down), speed.x(), speed.y()) / mass;
         const double w = lift_rate(mean[2], fall);
         const double most = k_most * fall;
         const double rate = std::clamp(w * (w * mean[0] + 2.0 * (mean[2] - mean[1])), -most, most);
@@ -122,8 +128,8 @@ void lift(const Heaps& heap, double dt, Data& data) {
 void watch_answer(const Body& seen, const MovableBelief& echo, const Neighborhood& n, MovableState& m) {
     const Vec3 radius(1.0, 1.0, std::sqrt(seen.inertia / seen.mass));
     const Twist told = (echo.given - m.seen_given).cwiseQuotient(Vec3(seen.mass, seen.mass, seen.inertia));
-    const Twist gravity(n.gravity.x(), n.gravity.y(), 0.0);
-    const Twist fall = (n.time - m.seen_time) * (gravity + seen.acceleration);
+    const Vec2 gravity = fall_of(n.gravity, seen);
+    const Twist fall = (n.time - m.seen_time) * Twist(gravity.x(), gravity.y(), 0.0);
     const Twist odd = seen.velocity - m.seen_velocity - told - fall;
     const double known = radius.cwiseProduct(told).norm() + radius.cwiseProduct(fall).norm();
     m.odd_change += k_answer * (radius.cwiseProduct(odd).norm() - m.odd_change);

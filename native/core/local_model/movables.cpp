@@ -77,7 +77,7 @@ double size_of(const Vec3& motion, const Body& body) {
 Twist present_surprise(MovableState& m, const Body& seen, const MovableBelief& echo, const Neighborhood& n,
                        double now) {
     const MovableBelief& b = m.belief;
-    const Vec2& gravity = n.gravity;
+    const Vec2 gravity = fall_of(n.gravity, seen);
     const Vec3 metric(1.0, 1.0, seen.inertia / seen.mass);
     Twist untold = (b.given - echo.given).cwiseQuotient(seen.mass * metric);
     Twist ahead = b.velocity - m.shift_velocity + m.pending_velocity - seen.velocity;
@@ -97,7 +97,7 @@ Twist present_surprise(MovableState& m, const Body& seen, const MovableBelief& e
     if (fall > 0.0)
         untold.head<2>() += m.lift / fall * gravity;
     if (m.free) {
-        ahead -= (now - n.time) * (Twist(gravity.x(), gravity.y(), 0.0) + seen.acceleration);
+        ahead -= (now - n.time) * Twist(gravity.x(), gravity.y(), 0.0);
         return untold - ahead;
     }
     const double size = untold.dot(metric.cwiseProduct(untold));
@@ -144,7 +144,8 @@ void correct(MovableState& m, const Body& seen, const Neighborhood& n, double no
         surprise = present_surprise(m, seen, *echo, n, now);
         const double part = trust(surprise, seen, m);
         const double window = std::max(n.time - m.heard_time, 0.0) + n.tick;
-        const Pose lead = lead_part(m, seen, *echo, window, n.gravity.norm(), difference) * difference;
+        const double fall = fall_of(n.gravity, seen).norm();
+        const Pose lead = lead_part(m, seen, *echo, window, fall, difference) * difference;
         surprise *= part;
         m.lead -= lead;
         difference -= lead;
@@ -220,9 +221,11 @@ void draw_back(const Data& data, double dt, MovableState& m) {
         rate = std::max(rate, std::min(gentle, 1.0 / (k_free_lead_ticks * tick)));
     }
     Pose back = std::min(1.0, dt * rate) * m.lead;
-    const double fall = data.gravity.squaredNorm();
-    if (m.row >= 0 && fall > 0.0 && m.free) // along its weight it is lifted
-        back.head<2>() -= back.head<2>().dot(data.gravity) / fall * data.gravity;
+    if (m.row >= 0 && m.free && m.body >= 0) { // along its weight it is lifted
+        const Vec2 fall = fall_of(data.gravity, data.neighbors.body[static_cast<std::size_t>(m.body)]);
+        if (!fall.isZero(0.0))
+            back.head<2>() -= back.head<2>().dot(fall) / fall.squaredNorm() * fall;
+    }
     m.lead -= back;
     add_pose(m, -back);
 }

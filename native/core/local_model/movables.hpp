@@ -22,6 +22,12 @@ void hear(double untold, double tick, double fall, MovableState& m);
 // Brings the environment up to what the tool bears, see carried.cpp.
 void lift_carried(Data& data, double dt);
 
+// With what acceleration the environment lets the body fall where nothing holds it: scenes tell that of the
+// tool, and of each body what it has more.
+inline Vec2 fall_of(const Vec2& gravity, const Body& body) {
+    return gravity + body.acceleration.head<2>();
+}
+
 // Corrections of the pose and of the velocity.
 inline void add_pose(MovableState& m, const Pose& pose) {
     m.belief.pose += pose;
