@@ -48,17 +48,16 @@ func _init(units: HapticUnits, remove: Callable) -> void:
 	_query.collide_with_areas = true
 
 
-## The bodies within the discs (canvas: x, y, radius in px), each grown by `growth` px, that `mask`
-## or `more` selects, in the order in which they were met first: the same in every run. Of tiles
-## those that `mask` selects.
+## The bodies within the discs (canvas: x, y, radius in px) that `mask` or `more` selects, in the
+## order in which they were met first: the same in every run. Of tiles those that `mask` selects.
 func find(
-	space: PhysicsDirectSpaceState2D, discs: Array[Vector3], growth: float, mask: int, more: int
+	space: PhysicsDirectSpaceState2D, discs: Array[Vector3], mask: int, more: int
 ) -> Array[BodyReader]:
 	_query.collision_mask = mask | more
 	var keys := PackedInt64Array()
 	var answers: Array[Array] = []
 	for disc: Vector3 in discs:
-		_circle.radius = disc.z + growth
+		_circle.radius = disc.z
 		_query.transform = Transform2D(0.0, Vector2(disc.x, disc.y))
 		var results := _ask(space)
 		answers.append(results)
@@ -67,7 +66,7 @@ func find(
 	# mostly the same as at the tick before; tiles come and go within their layer
 	if keys != _last_keys or _misses_some or not _layers.is_empty():
 		_last_keys = keys
-		var found := _sort_out(answers, discs, growth, mask)
+		var found := _sort_out(answers, discs, mask)
 		_keep_missing(found, space, mask | more)
 		_last.clear()
 		for id: int in _sorted(found):
@@ -105,11 +104,11 @@ func _sorted(found: Dictionary[int, BodyReader]) -> Array[int]:
 
 # the readers of what was answered, by their numbers
 func _sort_out(
-	answers: Array[Array], discs: Array[Vector3], growth: float, mask: int
+	answers: Array[Array], discs: Array[Vector3], mask: int
 ) -> Dictionary[int, BodyReader]:
 	var found: Dictionary[int, BodyReader] = {}
 	for index: int in discs.size():
-		var disc := Vector3(discs[index].x, discs[index].y, discs[index].z + growth)
+		var disc := discs[index]
 		var seen: Dictionary[int, bool] = {}
 		for result: Dictionary in answers[index]:
 			var key: int = result["collider_id"]

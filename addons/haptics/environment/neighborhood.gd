@@ -12,6 +12,10 @@ const Reach := preload("reach.gd")
 const _TICKS_TO_LOOK := 8
 # and everything is described anew in so many, whatever was noticed
 const _TICKS_TO_DESCRIBE := 240
+# bodies that can be pushed, beyond those in reach of the tool only so many that the loop has room
+const _MOST_MOVABLES := 16
+# around those beyond reach, m: they hardly move until the next look
+const _NARROW := 0.002
 # of our own nodes
 const _TELL := &"tell_problems"
 
@@ -30,8 +34,8 @@ var _finder: BodyFinder
 # numbers of bodies that are made of a resource, by its instance id
 var _watchers: Dictionary[int, Dictionary] = {}
 var _tick := 0
-# how much farther than the discs the last snapshot wanted to see, px, and what its movables meet
-var _growth := 0.0
+# discs around what can be pushed, from the last snapshot, and what these bodies meet
+var _around_movables: Array[Vector3] = []
 var _met_by_movables := 0
 
 
@@ -62,16 +66,17 @@ func publish(
 	for bits: int in masks:
 		mask |= bits
 	var readers := _finder.find(
-		world_2d.direct_space_state, around, _growth, mask, _met_by_movables
+		world_2d.direct_space_state, around + _around_movables, mask, _met_by_movables
 	)
-	_surround_movables(readers)
 	for reader: BodyReader in readers:
 		var turn := _tick + reader.id
 		if reader.is_dirty or turn % _TICKS_TO_LOOK == 0 or reader.id in touched:
 			reader.look()
 			if reader.is_dirty or turn % _TICKS_TO_DESCRIBE == 0:
 				_describe(reader, problems)
-		if not reader.is_usable:
+	var beyond := _surround_movables(readers)
+	for reader: BodyReader in readers:
+		if not reader.is_usable or beyond.has(reader.id):
 			continue
 		var state := reader.read_state(_tick, tick_seconds)
 		if reader.is_dirty:
@@ -171,28 +176,41 @@ func surface_of(number: int) -> HapticSurface:
 func clear() -> void:
 	_finder.clear()
 	_watchers.clear()
+	_around_movables.clear()
 
 
-# A body that can be pushed meets what lies around it: a disc each, and at the next tick the bodies
-# are looked for that much farther out.
-func _surround_movables(readers: Array[BodyReader]) -> void:
-	_growth = 0.0
-	_met_by_movables = 0
-	var around: Array[Vector3] = discs.duplicate()
+# A body that can be pushed meets what lies around it, and what it rests on may rest on others: each
+# gets a disc, from the tool on, as long as the loop has room, and at the next tick there is looked
+# for bodies in them. Returns the numbers of bodies that can be pushed and have none.
+func _surround_movables(readers: Array[BodyReader]) -> Dictionary[int, bool]:
+	var left: Dictionary[int, bool] = {}
+	var movables: Array[BodyReader] = []
 	for reader: BodyReader in readers:
-		if reader.kind() != "movable" or not is_finite(reader.extent):
-			continue
-		_met_by_movables |= (reader.node as CollisionObject2D).collision_mask
-		var at := reader.node.global_position
-		var radius := _units.to_pixels(reader.extent + Reach.MARGIN)
-		var growth := INF
-		for disc: Vector3 in around:
-			var distance := at.distance_to(Vector2(disc.x, disc.y))
-			if distance <= disc.z + radius:
-				growth = minf(growth, maxf(distance + radius - disc.z, 0.0))
-		if growth > 0.0 and is_finite(growth):
-			_growth = maxf(_growth, growth)
-			discs.append(Vector3(at.x, at.y, radius))
+		if reader.kind() == "movable" and is_finite(reader.extent):
+			left[reader.id] = true
+			movables.append(reader)
+	var tool_discs := discs.size()
+	_around_movables.clear()
+	_met_by_movables = 0
+	var from := 0
+	while from < discs.size() and not left.is_empty():
+		var disc := discs[from]
+		from += 1
+		for reader: BodyReader in movables:
+			if not left.has(reader.id):
+				continue
+			var is_near := from <= tool_discs
+			if not is_near and _around_movables.size() >= _MOST_MOVABLES:
+				break
+			var radius := _units.to_pixels(reader.extent + (Reach.MARGIN if is_near else _NARROW))
+			var at := reader.node.global_position
+			if at.distance_to(Vector2(disc.x, disc.y)) > disc.z + radius:
+				continue
+			left.erase(reader.id)
+			_met_by_movables |= (reader.node as CollisionObject2D).collision_mask
+			_around_movables.append(Vector3(at.x, at.y, radius))
+			discs.append(_around_movables[-1])
+	return left
 
 
 func _to_meters(around: Array[Vector3]) -> PackedFloat64Array:
