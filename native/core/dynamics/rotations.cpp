@@ -49,8 +49,38 @@ HAPTICS_ALWAYS_INLINE void add_up(int count, const double* part, double* sum) {
     }
 }
 
+/// Few bodies: their angles go from register to register, where a vector read of numbers that were just
+/// written one by one would wait.
+template <int N>
+HAPTICS_ALWAYS_INLINE void rotate_few(const LinkageModel& model, LinkageData& data) {
+    const double* q = data.position.data() + (model.floating ? 2 : 0);
+    const double* v = data.velocity.data() + (model.floating ? 2 : 0);
+    double angle[4] = {0.0, 0.0, 0.0, 0.0};
+    double rate = 0.0;
+    for (int i = 0; i < N; ++i) {
+        const double turn = model.turn_offset[i + 1] + q[i];
+        angle[i] = i > 0 ? angle[i - 1] + turn : turn;
+        rate = i > 0 ? rate + v[i] : v[i];
+        data.angle[i + 1] = angle[i];
+        data.rate[i + 1] = rate;
+    }
+    store_sincos(angle[0], angle[1], angle[2], angle[3], data.sine.data() + 1, data.cosine.data() + 1);
+}
+
 HAPTICS_ALWAYS_INLINE void rotate_chain(const LinkageModel& model, LinkageData& data) {
     const int count = model.body_count;
+    switch (count) {
+    case 1:
+        return rotate_few<1>(model, data);
+    case 2:
+        return rotate_few<2>(model, data);
+    case 3:
+        return rotate_few<3>(model, data);
+    case 4:
+        return rotate_few<4>(model, data);
+    default:
+        break;
+    }
     const double* q = data.position.data() + (model.floating ? 2 : 0);
     double turn[k_body_slots];
     for (int i = 0; i < count; ++i) {

@@ -6,6 +6,8 @@
 
 #include <haptics/core/dynamics/integrators/state_vector.hpp>
 
+#include <utility>
+
 namespace haptics {
 namespace detail {
 
@@ -65,26 +67,43 @@ class DormandPrince8 {
     /// One step of h (s) from t (s).
     template <class Derivative>
     void step(const Derivative& derivative, double t, double h, StateVector& y) {
-        for (int i = 0; i < detail::k_dop853_stages; ++i) {
-            stage_ = y;
-            for (int j = 0; j < i; ++j) {
-                if (detail::k_dop853_a[i][j] != 0.0) {
-                    stage_ += (h * detail::k_dop853_a[i][j]) * rate_[j];
-                }
-            }
-            rate_[i].resize(y.size());
-            derivative(t + detail::k_dop853_c[i] * h, stage_, rate_[i]);
-        }
-        for (int i = 0; i < detail::k_dop853_stages; ++i) {
-            if (detail::k_dop853_b[i] != 0.0) {
-                y += (h * detail::k_dop853_b[i]) * rate_[i];
-            }
-        }
+        stage_.resize(y.size());
+        take_stages(derivative, t, h, y, std::make_integer_sequence<int, detail::k_dop853_stages>{});
+        combine<detail::k_dop853_stages>(h, y, y, std::make_integer_sequence<int, detail::k_dop853_stages>{});
     }
     /// Nothing to forget.
     void restart() {}
 
   private:
+    template <class Derivative, int... Stage>
+    void take_stages(const Derivative& derivative, double t, double h, const StateVector& y,
+                     std::integer_sequence<int, Stage...> /*stages*/) {
+        (take_stage<Stage>(derivative, t, h, y), ...);
+    }
+    template <int Stage, class Derivative>
+    void take_stage(const Derivative& derivative, double t, double h, const StateVector& y) {
+        rate_[Stage].resize(y.size());
+        if constexpr (Stage > 0)
+            combine<Stage>(h, y, stage_, std::make_integer_sequence<int, Stage>{});
+        derivative(t + detail::k_dop853_c[Stage] * h, Stage > 0 ? stage_ : y, rate_[Stage]);
+    }
+    // a row of the table, its last row b; written out, for the table's zeros and without a loop over rates
+    template <int Row, int... J>
+    void combine(double h, const StateVector& y, StateVector& result,
+                 std::integer_sequence<int, J...> /*columns*/) const {
+        const double* const rate[] = {rate_[J].data()...};
+        const double weight[] = {h * weight_of(Row, J)...};
+        const Eigen::Index size = y.size();
+        for (Eigen::Index k = 0; k < size; ++k) {
+            double sum = y[k];
+            ((weight_of(Row, J) != 0.0 ? void(sum += weight[J] * rate[J][k]) : void()), ...);
+            result[k] = sum;
+        }
+    }
+    static constexpr double weight_of(int row, int column) {
+        return row == detail::k_dop853_stages ? detail::k_dop853_b[column] : detail::k_dop853_a[row][column];
+    }
+
     Slots<StateVector, detail::k_dop853_stages> rate_;
     StateVector stage_;
 };

@@ -20,15 +20,21 @@ class LinkageMotion {
 
     /// Writes the rate of y; leaves y's state in the data.
     void operator()(double /*t*/, const StateVector& y, StateVector& rate) const {
+        // few numbers: plain loops beat vector expressions of a size that is not known
         const int n = model_.freedoms;
-        data_.position = y.head(n);
-        data_.velocity = y.tail(n);
-        force_ = constant_force;
+        force_.resize(n);
+        for (int i = 0; i < n; ++i) {
+            data_.position[i] = y[i];
+            data_.velocity[i] = y[n + i];
+            force_[i] = constant_force[i];
+        }
         add_joint_forces(model_, data_, force_);
         prepare_dynamics(model_, data_);
         forward_dynamics(model_, data_, force_, factor_, acceleration_);
-        rate.head(n) = y.tail(n);
-        rate.tail(n) = acceleration_;
+        for (int i = 0; i < n; ++i) {
+            rate[i] = y[n + i];
+            rate[n + i] = acceleration_[i];
+        }
     }
 
     /// Generalized force that does not change, N m or N.
