@@ -13,6 +13,8 @@
 // Energy. A spring that only gets softer gives no energy, but one that grows around a tool at the depth d
 // gives up to K d^2 / 2 and would throw the tool out. So a contact that fades with the weight w has a damper
 // more, 4 (1 - u) w sqrt(K m) with the mass m that the contact moves (assemble.cpp): the tool creeps out.
+// What the scene moves appears where the tool just touches it, and pushes it out on its way to its place
+// (appear.cpp).
 
 #include "fading.hpp"
 
@@ -21,23 +23,19 @@
 #include <algorithm>
 #include <array>
 
+#include "appear.hpp"
+
 namespace haptics::local {
 namespace {
 
 constexpr double k_fade = 0.05;
+// presence of what is as good as there but not yet at its place
+constexpr double k_arriving = 0.999;
 
 // a patch in contact that has neighbor `i` on one side
 bool is_of(const Data& data, const Patch& p, std::int32_t i) {
     const std::int32_t index = i + data.tool.body_count;
     return p.memory.state != ContactState::none && (p.body_a == index || p.body_b == index);
-}
-
-bool is_touched(const Data& data, std::int32_t i) {
-    for (std::int32_t k = 0; k < data.patches.count; ++k)
-        if (is_of(data, data.patches.patch[static_cast<std::size_t>(k)], i))
-            return true;
-    // merged with what it lies beside, it may have no patch of its own name
-    return data.patches.count > 0 && is_stood_in(data, i);
 }
 
 bool is_felt(const Data& data, std::int32_t i, std::uint32_t piece) {
@@ -111,6 +109,14 @@ bool is_stood_in(const Data& data, std::int32_t i) {
     return false;
 }
 
+bool is_touched(const Data& data, std::int32_t i) {
+    for (std::int32_t k = 0; k < data.patches.count; ++k)
+        if (is_of(data, data.patches.patch[static_cast<std::size_t>(k)], i))
+            return true;
+    // merged with what it lies beside, it may have no patch of its own name
+    return data.patches.count > 0 && is_stood_in(data, i);
+}
+
 void save_leavers(const BodySet& next, Data& data) {
     Leavers& out = data.leavers;
     out.body_count = 0;
@@ -146,13 +152,16 @@ void end_fades(Data& data) {
     for (std::int32_t i = 0; i < set.body_count; ++i) {
         const auto from = static_cast<std::size_t>(i);
         Track& t = data.track[from];
-        const bool left_alone = t.presence < 1.0 && !is_stood_in(data, i);
+        const bool alone = t.presence < 1.0 && !is_stood_in(data, i);
+        const bool left_alone = alone && !is_arriving(t, data.time);
         if (t.leaving && (t.presence <= 0.0 || left_alone)) {
             now[from] = -1;
             continue;
         }
         if (left_alone)
             set_presence(1.0, t, set.body[from]);
+        else if (alone) // what it reaches on its way it meets as gently as what it appeared around
+            set_presence(0.0, t, set.body[from]);
         now[from] = kept;
         const auto to = static_cast<std::size_t>(kept++);
         if (to == from)
@@ -185,7 +194,9 @@ void fade(double dt, Data& data) {
         if (!fades(t) || (t.leaving && t.left > first))
             continue;
         const double change = t.leaving ? -dt / k_fade : dt / k_fade;
-        set_presence(std::clamp(t.presence + change, 0.0, 1.0), t, data.neighbors.body[k]);
+        // what arrives is not run into before it is there
+        const double most = is_arriving(t, data.time) ? k_arriving : 1.0;
+        set_presence(std::clamp(t.presence + change, 0.0, most), t, data.neighbors.body[k]);
     }
 }
 

@@ -8,6 +8,9 @@ namespace haptics::local {
 // Whether the tool, or a movable that is joined to it, stands in neighbor `i`.
 bool is_stood_in(const Data& data, std::int32_t i);
 
+// Whether a contact with neighbor `i` goes on.
+bool is_touched(const Data& data, std::int32_t i);
+
 // Saves the neighbors that `next` no longer lists and that are touched or already fade into data.leavers.
 void save_leavers(const BodySet& next, Data& data);
 

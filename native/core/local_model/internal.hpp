@@ -97,6 +97,8 @@ void put_back(const Model& model, Data& data, const LinkageVector& start, StepOu
 
 // Moves kinematic bodies and free movables to where they are `dt` later, and blends in corrections.
 void move_neighbors(Data& data, double dt);
+// Takes the anchors of friction along with what neighbors were corrected by, before contacts are looked for.
+void move_anchors(Data& data);
 
 // Copies the velocities of the tool and of the island's movables between Data and the system.
 void store_velocities(const Model& model, Data& data);

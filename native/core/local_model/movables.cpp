@@ -163,13 +163,14 @@ void correct(MovableState& m, const Body& seen, const Neighborhood& n, double no
 void meet(MovableState& m, const Body& seen, const Track& track, const Data& data) {
     m = MovableState{};
     const PathPoint at = extrapolated(track, data.time);
+    const Twist felt = track.offset.velocity + track.felt * track.offset.rate;
     m.belief.id = seen.id;
     m.belief.epoch = data.step;
     m.belief.time = data.time;
-    m.belief.pose = at.pose + track.offset;
-    m.belief.velocity = at.velocity + track.offset_velocity;
-    m.pending_pose = -track.offset;
-    m.pending_velocity = -track.offset_velocity;
+    m.belief.pose = at.pose + track.offset.pose;
+    m.belief.velocity = at.velocity + felt;
+    m.pending_pose = -track.offset.pose;
+    m.pending_velocity = -felt;
     m.blend_left = track.blend;
     m.heard_time = data.time;
 }

@@ -10,7 +10,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "appear.hpp"
 #include "fading.hpp"
+#include "gentle.hpp"
 #include "internal.hpp"
 #include "movables.hpp"
 #include "path.hpp"
@@ -25,6 +27,9 @@ constexpr double k_latency_memory = 4.0;
 constexpr double k_turn = 6.28318530717958647692;
 // a body that would have to be faster than this to get where the snapshot has it has been put there, m/s
 constexpr double k_teleport = 5.0;
+
+// where the force has to go on gently, s
+constexpr double k_longest_blend = 0.1;
 
 // larger than anything in a scene, m, m/s, kg, …
 constexpr double k_beyond_scene = 1e9;
@@ -63,7 +68,7 @@ void place_neighbors(Data& data, double dt) {
     for (std::int32_t i = 0; i < data.neighbors.body_count; ++i) {
         const auto k = static_cast<std::size_t>(i);
         const Track& t = data.track[k];
-        if (t.driven && !(t.still && t.offset.isZero(0.0)))
+        if (t.driven && !(t.still && t.offset.is_zero()))
             place(data, k);
     }
     fade(dt, data);
@@ -124,7 +129,7 @@ void learn_latency(const Neighborhood& n, Data& data) {
 PathPoint shown_now(const Data& data, std::size_t i) {
     if (data.track[i].driven)
         return shown(data.track[i], data.time);
-    return {data.neighbors.body[i].pose, data.neighbors.body[i].velocity, Vec3::Zero()};
+    return moving_point(data.neighbors.body[i].pose, data.neighbors.body[i].velocity, Vec3::Zero());
 }
 
 Track track_of(const Body& body, const Neighborhood& n, const Data& data) {
@@ -141,7 +146,9 @@ Track track_of(const Body& body, const Neighborhood& n, const Data& data) {
 }
 
 // lets the path of a body go on from its last one; false when the body has been put somewhere else
-bool follow(const PathPoint& from, const Track& before, Track& t) {
+bool follow(const Data& data, std::size_t old, Track& t) {
+    const PathPoint from = shown_now(data, old);
+    const Track& before = data.track[old];
     t.pose.z() += k_turn * std::round((before.pose.z() - t.pose.z()) / k_turn);
     const double gap = std::max(t.time - before.time, t.tick);
     const Pose jump = t.pose - extrapolated(before, t.time).pose;
@@ -150,8 +157,15 @@ bool follow(const PathPoint& from, const Track& before, Track& t) {
     t.presence = before.presence;
     if (before.driven && !before.still && !t.still)
         estimate(before, t);
-    t.blend = blend_time(before, t);
-    join(from, t);
+    const PathPoint to = extrapolated(t, t.taken);
+    const double least = blend_time(before, t);
+    t.felt = 0.0;
+    join(from, to, t);
+    const Blending blending = gentle_blending(data, static_cast<std::int32_t>(old), t.offset, least,
+                                              std::max(k_longest_blend, least));
+    t.blend = blending.time;
+    t.felt = blending.felt;
+    join(from, to, t);
     return true;
 }
 
@@ -173,6 +187,19 @@ void follow_moved_away(double gap, std::array<bool, k_max_bodies>& fresh, Data& 
     }
 }
 
+// lets a body that is in nobody's way be where it should be one tick from now
+void hurry(Data& data, std::int32_t i) {
+    Track& t = data.track[static_cast<std::size_t>(i)];
+    if (!t.driven || is_touched(data, i))
+        return;
+    Body& body = data.neighbors.body[static_cast<std::size_t>(i)];
+    const Pose here = body.pose;
+    body.pose = extrapolated(t, t.taken + t.tick).pose;
+    if (!is_stood_in(data, i))
+        t.blend = t.tick;
+    body.pose = here;
+}
+
 // whether there is what the plan of the scene does not know of: what fades, a fixed body on its way, a
 // movable one that found no place
 bool is_beyond_plan(const Neighborhood& n, const Data& data) {
@@ -180,7 +207,7 @@ bool is_beyond_plan(const Neighborhood& n, const Data& data) {
         return true;
     const auto end = data.track.begin() + n.bodies.body_count;
     return std::any_of(data.track.begin(), end,
-                       [](const Track& t) { return t.presence < 1.0 || (t.still && !t.offset.isZero(0.0)); });
+                       [](const Track& t) { return t.presence < 1.0 || (t.still && !t.offset.is_zero()); });
 }
 
 } // namespace
@@ -188,6 +215,7 @@ bool is_beyond_plan(const Neighborhood& n, const Data& data) {
 void take_neighborhood(const Neighborhood& n, Data& data) {
     if (n.sequence <= data.sequence || !is_true_snapshot(n))
         return;
+    move_anchors(data);
     learn_latency(n, data);
     const bool first = data.sequence == 0; // what the loop starts in has been there before
     std::array<bool, k_max_bodies> fresh;
@@ -197,7 +225,7 @@ void take_neighborhood(const Neighborhood& n, Data& data) {
         Track& t = data.next_track[k] = track_of(n.bodies.body[k], n, data);
         const std::int32_t old = find_body(data.neighbors, n.bodies.body[k].id, i);
         const auto was = static_cast<std::size_t>(old);
-        fresh[k] = old < 0 || !follow(shown_now(data, was), data.track[was], t);
+        fresh[k] = old < 0 || !follow(data, was, t);
         if (fresh[k] && old >= 0 && is_own(n.bodies.body[k], data.track[was])) {
             fresh[k] = false;
             t.presence = data.track[was].presence;
@@ -226,11 +254,17 @@ void take_neighborhood(const Neighborhood& n, Data& data) {
     place_neighbors(data, 0.0);
     move_movables(data, 0.0);
 
+    // what nothing touches or will stand in where it goes has a tick for that, however far it had come to
+    // rest
+    for (std::int32_t i = 0; i < n.bodies.body_count; ++i)
+        if (data.track[static_cast<std::size_t>(i)].blend > data.track[static_cast<std::size_t>(i)].tick)
+            hurry(data, i);
+
     // what appears around the tool
     for (std::int32_t i = 0; i < n.bodies.body_count; ++i) {
         const auto k = static_cast<std::size_t>(i);
         if (!first && fresh[k] && is_stood_in(data, i))
-            set_presence(0.0, data.track[k], data.neighbors.body[k]);
+            appear(data, i);
     }
     if (is_beyond_plan(n, data))
         data.plan = Plan{};
@@ -248,6 +282,46 @@ void move_neighbors(Data& data, double dt) {
     if (data.plan.runs(Stage::moving_walls))
         place_neighbors(data, dt);
     move_movables(data, dt);
+}
+
+void move_anchors(Data& data) {
+    const auto correction = [&data](std::int32_t body) -> Pose {
+        const std::int32_t i = body - data.tool.body_count;
+        if (i < 0)
+            return Pose::Zero();
+        const Track& t = data.track[static_cast<std::size_t>(i)];
+        return t.driven && !t.settled ? Pose(corrected(t, data.time) - t.anchored) : Pose(Pose::Zero());
+    };
+    for (std::int32_t i = 0; i < data.patches.count; ++i) {
+        Patch& p = data.patches.patch[static_cast<std::size_t>(i)];
+        if (p.memory.state == ContactState::none)
+            continue;
+        const Pose by_a = correction(p.body_a);
+        const Pose by_b = correction(p.body_b);
+        if (by_a.isZero(0.0) && by_b.isZero(0.0))
+            continue;
+        Vec2 middle{0.0, 0.0};
+        for (std::int32_t k = 0; k < p.point_count; ++k)
+            middle +=
+                p.point[static_cast<std::size_t>(k)].weight * p.point[static_cast<std::size_t>(k)].position;
+        const auto moved = [&](std::int32_t body, const Pose& by) {
+            return velocity_at(by, middle - body_of(data, body).pose.head<2>());
+        };
+        const Vec2 apart = moved(p.body_a, by_a) - moved(p.body_b, by_b);
+        const Vec2 tangent = perpendicular(p.normal);
+        if (p.memory.state == ContactState::sticking)
+            p.memory.slip_spring += tangent.dot(apart);
+        if (p.body_a < data.tool.body_count)
+            data.correction_work -=
+                p.memory.normal_force * p.normal.dot(apart) + p.memory.tangent_force * tangent.dot(apart);
+    }
+    for (std::int32_t i = 0; i < data.neighbors.body_count; ++i) {
+        Track& t = data.track[static_cast<std::size_t>(i)];
+        if (t.settled)
+            continue;
+        t.anchored = corrected(t, data.time);
+        t.settled = data.time >= t.taken + t.blend;
+    }
 }
 
 } // namespace local

@@ -27,8 +27,10 @@ void find_contacts(const Model& model, Data& data, double dt) {
         return;
     }
     const bool fades = data.plan.runs(Stage::moving_walls);
-    if (fades)
+    if (fades) {
         local::end_fades(data);
+        local::move_anchors(data);
+    }
     const bool exact = model.settings.integrator == Integrator::exact;
     if (exact) // it asks for them later in the step
         data.previous = data.patches;
@@ -123,6 +125,9 @@ void guarded_step(const Model& model, Data& data, const HandInput& hand, double 
             find_contacts(model, data, dt);
         make_step(model, data, hand, dt, output);
     }
+    output.source_work += data.correction_work;
+    data.correction_work = 0.0;
+    data.step_length = dt;
     if (local::ran_away(model, data)) {
         if (!model.tool.articulated)
             coordinates = start;
@@ -139,7 +144,11 @@ void reset(const Model& model, Data& data, const LinkageVector& configuration) {
         data.linkage.position = configuration;
         data.half_step.setZero(model.tool.linkage.freedoms);
         data.energy_budget = 0.0;
+        data.tool_mass = 0.0;
+        for (int i = 0; i < model.tool.linkage.link_count; ++i)
+            data.tool_mass += model.tool.linkage.link[i].mass;
     } else {
+        data.tool_mass = model.tool.mass;
         data.pose = configuration;
         data.velocity.setZero();
     }
@@ -147,6 +156,7 @@ void reset(const Model& model, Data& data, const LinkageVector& configuration) {
     data.pushed = false;
     data.grip = model.tool.grip;
     data.patches.count = 0;
+    data.correction_work = 0.0;
     data.touched_count = 0;
     data.tool_cache.known = false;
     data.tool.body_count = model.tool.shape.body_count;
@@ -178,6 +188,8 @@ void step_direct(const Model& model, Data& data, const Pose& pose, const Twist& 
     output.grip_mobility = local::mobility(model, data);
     local::explicit_forces(model, data, dt, output);
     local::finish(model, data, output);
+    output.source_work += data.correction_work;
+    data.correction_work = 0.0;
     ++data.step;
 }
 

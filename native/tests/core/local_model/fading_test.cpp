@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 using namespace haptics;
@@ -188,6 +189,70 @@ TEST_CASE("a movable body that the scene puts where the tool is fades in and pus
     CHECK(fastest < 0.02);
     s.run(1000);
     CHECK(s.last.y() == doctest::Approx(15000.0 * s.out.max_penetration).epsilon(1e-3));
+}
+
+TEST_CASE("what appears deep in the tool moves it out gently, however stiff, and not at once") {
+    const Convex inside = make_disc(Vec2(0.003, 0.0099), 0.003);
+    const Convex blade = make_box(Vec2(0.0, 0.008), Vec2(0.2, 0.001));
+    for (const Convex* shape : {&k_floor, &inside, &blade})
+        for (const BodyKind kind : {BodyKind::fixed, BodyKind::kinematic})
+            for (const double stiffness : {2000.0, 15000.0, 100000.0}) {
+                FadingScene s;
+                s.data->pose.y() = s.hand.target.y() = 0.008;
+                s.publish();
+                s.run(50);
+                Surface surface = shared::paper_surface();
+                surface.stiffness = stiffness;
+                s.add(7, kind, *shape, surface);
+                s.publish();
+                s.watch();
+                CAPTURE(stiffness);
+                double most = 0.0;
+                double fastest = 0.0;
+                for (int i = 0; i < 300; ++i) {
+                    if (i % 16 == 0)
+                        s.publish();
+                    s.run(1);
+                    most = std::max(most, s.last.head<2>().norm());
+                    fastest = std::max(fastest, s.data->velocity.head<2>().norm());
+                }
+                CHECK(s.largest < 0.1);
+                CHECK(fastest < 0.15); // its own spring would give up to 5 m/s
+                CHECK(most < 3.0);
+                CHECK(s.hits == 0);
+                s.run(1500);
+                CHECK(s.out.contacts == 1);
+                CHECK(std::abs(s.last.y()) ==
+                      doctest::Approx(stiffness * s.out.max_penetration).epsilon(1e-3));
+                CHECK(s.data->track[0].presence == 1.0);
+            }
+}
+
+TEST_CASE("what appears in a tool that is pressed on holds it as the wall that it is") {
+    for (const double stiffness : {2000.0, 15000.0, 100000.0})
+        for (const double depth : {0.0005, 0.003}) {
+            FadingScene s;
+            s.data->pose.y() = s.hand.target.y() = 0.01 - depth;
+            s.publish();
+            s.run(50);
+            Surface surface = shared::paper_surface();
+            surface.stiffness = stiffness;
+            s.add(7, BodyKind::fixed, k_floor, surface);
+            s.publish();
+            s.watch();
+            s.hand.force.y() = -2.0; // from now on
+            double lowest = 1.0;
+            for (int i = 0; i < 400; ++i) {
+                s.run(1);
+                lowest = std::min(lowest, s.data->pose.y());
+            }
+            CAPTURE(stiffness);
+            CAPTURE(depth);
+            const double sank = 0.01 - depth - lowest;
+            CHECK(sank < 2.0 / stiffness + 0.001);
+            s.run(800);
+            CHECK(s.last.y() == doctest::Approx(stiffness * s.out.max_penetration).epsilon(1e-3));
+        }
 }
 
 TEST_CASE("a body that appears free of the tool is whole when it is hit") {

@@ -3,7 +3,10 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <iomanip>
+#include <random>
 
 #include "late_world.hpp"
 #include "support/doc_table.hpp"
@@ -43,33 +46,6 @@ bool is_far(const Line& line) {
     return line.delay >= 0.1 || line.jitter * line.rate > 1.0 || line.lost > 0.0;
 }
 
-// Where the bound on the jump of force at an update does not hold (docs/late-geometry.md): the ratio to the
-// bound that was seen. Everywhere else it is at most 1.
-struct Beyond {
-    const char* name;
-    double rate;
-    double delay;
-    double lost;
-    Motion motion;
-    double stiffness;
-    double seen;
-};
-constexpr Beyond k_beyond[] = {
-    {"even", 20.0, 0.1, 0.0, Motion::sine, 5000.0, 1.05},
-    {"jittered", 120.0, 0.06, 0.0, Motion::sine, 5000.0, 1.42},
-    {"lossy", 120.0, 0.08, 0.2, Motion::sine, 5000.0, 2.18},
-    {"lossy", 120.0, 0.08, 0.2, Motion::swing, 5000.0, 3.32},
-};
-
-// most that the ratio may be; what was seen beyond the bound has a tenth of room for other compilers
-double allowed_ratio(const Line& line, Motion motion, double stiffness) {
-    for (const Beyond& b : k_beyond)
-        if (line.name == b.name && line.rate == b.rate && line.delay == b.delay && line.lost == b.lost &&
-            motion == b.motion && stiffness == b.stiffness)
-            return 1.1 * b.seen;
-    return 1.0;
-}
-
 Press press_of(double stiffness, double damping, double force) {
     Press p;
     p.surface.stiffness = stiffness;
@@ -78,29 +54,32 @@ Press press_of(double stiffness, double damping, double force) {
     return p;
 }
 
-// one row: the line, per motion the RMS error of ours, without blending and held, and the worst jump of each
+// one row: the line, per motion the RMS error of ours, without blending and held, the worst jump of each, and
+// our longest blend
 void write_row(std::ostream& out, const Line& line, const Press& press, double seconds) {
     out << "| " << line.name << " | " << line.rate << " | " << line.delay * 1e3 << " | " << line.jitter * 1e3
         << " | " << line.lost * 1e2;
     double worst[3] = {0.0, 0.0, 0.0};
+    double blend = 0.0;
     for (const Motion motion : k_motions) {
         int k = 0;
         for (const Use use : {Use::ours, Use::no_blend, Use::hold_last}) {
             const Figures f = compare(motion, line, use, press, seconds);
             out << (k == 0 ? " | " : " / ") << (f.rms < 1e-6 ? 0.0 : f.rms);
             worst[k] = std::max(worst[k], f.jump_ratio);
+            blend = k == 0 ? std::max(blend, f.blend) : blend;
             ++k;
         }
     }
-    out << " | " << worst[0] << " / " << worst[1] << " / " << worst[2] << " |\n";
+    out << " | " << worst[0] << " / " << worst[1] << " / " << worst[2] << " | " << blend << " |\n";
 }
 
 } // namespace
 
 TEST_CASE("late geometry: the table") {
     write_doc_table("late_geometry", [](std::ostream& out) {
-        out << "| line | Hz | delay, ms | jitter, ms | lost, % | constant | sine | swing | cam | jump |\n"
-               "|---|---|---|---|---|---|---|---|---|---|\n"
+        out << "| line | Hz | delay, ms | jitter, ms | lost, % | constant | sine | swing | cam | jump | blend |\n"
+               "|---|---|---|---|---|---|---|---|---|---|---|\n"
             << std::setprecision(3);
         for (const auto& lines : {even_lines(), uneven_lines(), lossy_lines()})
             for (const Line& line : lines)
@@ -121,10 +100,79 @@ TEST_CASE("an update changes the force by no more than 7 % or 0.05 N beyond what
                     CAPTURE(press.surface.stiffness);
                     CAPTURE(line.lost);
                     const Figures f = compare(motion, line, Use::ours, press, 2.5);
-                    CHECK(f.jump_ratio < allowed_ratio(line, motion, press.surface.stiffness));
+                    CHECK(f.jump_ratio < 1.0);
+                    CHECK(f.any_ratio < 1.0); // nor on the way of a correction
                     if (!is_far(line))
                         CHECK(f.colliding == f.colliding_true); // a swinging wall rocks the tool
                 }
+}
+
+TEST_CASE("nor does it at random rates, delays, losses, walls, tools and hands") {
+    // a swinging wall throws the tool: its hits come at other times, and their force too
+    constexpr Motion k_steady[] = {Motion::constant, Motion::sine, Motion::cam};
+    std::mt19937 random(20);
+    const auto between = [&](double low, double high) {
+        return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
+    };
+    const auto spread = [&](double low, double high) {
+        return low * std::pow(high / low, between(0.0, 1.0));
+    };
+    const auto one_in = [&](int n) { return random() % static_cast<unsigned>(n) == 0; };
+    const char* asked = std::getenv("HAPTICS_LATE_CASES");
+    const int cases = asked == nullptr ? 60 : std::atoi(asked);
+    int at_update = 0;
+    int at_any = 0;
+    double worst = 0.0;
+    for (int i = 0; i < cases; ++i) {
+        Line line;
+        line.rate = between(20.0, 120.0);
+        line.delay = between(0.0, 0.1);
+        line.jitter = one_in(2) ? between(0.0, 1.5) / line.rate : 0.0;
+        line.bunched = one_in(3);
+        line.lost = one_in(3) ? between(0.0, 0.3) : 0.0;
+        line.differences = one_in(3);
+        Press press;
+        press.force = spread(0.7, 4.0);
+        press.tool_mass = spread(0.05, 0.5);
+        press.surface.stiffness = spread(500.0, 300000.0);
+        const double critical = 2.0 * std::sqrt(press.surface.stiffness * press.tool_mass);
+        press.surface.damping = spread(0.1, 3.0) * critical;
+        press.damping.y() = spread(0.5, 20.0);
+        press.pace = between(0.3, 1.5);
+        press.size = between(0.2, 1.5);
+        CAPTURE(i);
+        const Figures f = compare(k_steady[i % 3], line, Use::ours, press, 1.5);
+        at_update += f.jump_ratio > 1.0 ? 1 : 0;
+        at_any += f.any_ratio > 1.0 ? 1 : 0;
+        worst = std::max(worst, f.jump_ratio);
+        if (asked == nullptr)
+            CHECK(f.jump_ratio < 1.0);
+    }
+    if (asked != nullptr)
+        MESSAGE(at_update << " beyond the bound at an update, worst " << worst << ", " << at_any
+                          << " in some step");
+}
+
+TEST_CASE("what sticks to a wall goes along with its corrections too") {
+    Press press;
+    press.surface.static_friction = press.surface.dynamic_friction = 1.5;
+    press.stiffness.x() = 0.0;
+    const auto slip = [&](const Line& line, Use use) {
+        LateWorld world(Motion::slide, line, use, press);
+        Sample s;
+        for (int i = 0; i < 4000; ++i)
+            s = world.step();
+        CHECK(world.data().patches.patch[0].memory.state == ContactState::sticking);
+        return world.data().pose.x() - s.wall.x();
+    };
+    const double truth = slip({}, Use::every_step);
+    for (const auto& lines : {even_lines(), uneven_lines(), lossy_lines()})
+        for (const Line& line : lines) {
+            CAPTURE(line.name);
+            CAPTURE(line.rate);
+            CAPTURE(line.delay);
+            CHECK(std::abs(slip(line, Use::ours) - truth) < 1e-5);
+        }
 }
 
 TEST_CASE("poses that a scene rounds do not shake what is extrapolated from their differences") {

@@ -42,6 +42,10 @@ struct Data {
     std::uint64_t step{0};
     /// Loop-clock time of the state, s.
     double time{0.0};
+    /// Length of the last step, s.
+    double step_length{0.001};
+    /// Mass of a rigid tool, or of all links, kg.
+    double tool_mass{0.1};
     /// Proxy: pose and velocity of the center of mass of a rigid tool, or of the held link.
     Pose pose{0.0, 0.0, 0.0};
     Twist velocity{0.0, 0.0, 0.0};
@@ -72,6 +76,8 @@ struct Data {
     /// How late snapshots come, as far as the last ones tell, s.
     double latency{0.0};
     Vec2 gravity{0.0, 0.0};
+    /// Work on the tool of what neighbors were corrected by since the last step, J.
+    double correction_work{0.0};
     /// Stages that run.
     Plan plan;
     /// One per neighbor. Neighbors that fade out come after those of the snapshot.

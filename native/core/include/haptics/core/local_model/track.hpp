@@ -16,6 +16,22 @@ struct PastVelocity {
 };
 inline constexpr std::int32_t k_past_velocities = 8;
 
+/// What the path of a body is shown beside that of its last snapshot: in pose, with its first two
+/// derivatives, and in the velocity that contacts feel beyond the share of `rate` that they feel, with its
+/// first.
+struct PathOffset {
+    Pose pose{0.0, 0.0, 0.0};
+    Twist rate{0.0, 0.0, 0.0};
+    Vec3 bend{0.0, 0.0, 0.0};
+    Twist velocity{0.0, 0.0, 0.0};
+    Vec3 acceleration{0.0, 0.0, 0.0};
+
+    [[nodiscard]] bool is_zero() const {
+        return pose.isZero(0.0) && rate.isZero(0.0) && bend.isZero(0.0) && velocity.isZero(0.0) &&
+               acceleration.isZero(0.0);
+    }
+};
+
 /// Path of a neighbor that the scene moves, and how much of a neighbor is there while it fades in or out.
 /// Derivations are in native/core/local_model/path.cpp.
 struct Track {
@@ -34,14 +50,17 @@ struct Track {
     bool driven{true};
     /// Stays where it is whatever its velocity says (fixed bodies).
     bool still{false};
+    /// The anchors of friction have followed all of the correction below.
+    bool settled{true};
 
-    /// When the snapshot was taken, s; where the body was shown then less where the new path has it, and the
-    /// first two derivatives of that. The difference is gone `blend` seconds later.
+    /// When the snapshot was taken, s, and where the body was shown then less where the new path has it,
+    /// which is gone `blend` seconds later. The share of that correction which contacts feel as motion, and
+    /// how much of the rest the anchors of friction know of.
     double taken{0.0};
     double blend{1.0 / 60.0};
-    Pose offset{0.0, 0.0, 0.0};
-    Twist offset_velocity{0.0, 0.0, 0.0};
-    Vec3 offset_acceleration{0.0, 0.0, 0.0};
+    PathOffset offset;
+    double felt{1.0};
+    Pose anchored{0.0, 0.0, 0.0};
 
     /// Memory of the estimate: velocity as the snapshot told it, times and told velocities of the snapshots
     /// before, newest first, and for translation and turning the recent sizes of its first and third
