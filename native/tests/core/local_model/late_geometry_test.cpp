@@ -78,7 +78,8 @@ void write_row(std::ostream& out, const Line& line, const Press& press, double s
 
 TEST_CASE("late geometry: the table") {
     write_doc_table("late_geometry", [](std::ostream& out) {
-        out << "| line | Hz | delay, ms | jitter, ms | lost, % | constant | sine | swing | cam | jump | blend |\n"
+        out << "| line | Hz | delay, ms | jitter, ms | lost, % | constant | sine | swing | cam | jump | "
+               "blend |\n"
                "|---|---|---|---|---|---|---|---|---|---|---|\n"
             << std::setprecision(3);
         for (const auto& lines : {even_lines(), uneven_lines(), lossy_lines()})
