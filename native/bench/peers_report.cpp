@@ -239,10 +239,19 @@ constexpr double k_half_x = 0.01;
 constexpr double k_half_y = 0.02;
 constexpr double k_side = 5e-5; // play on each side
 
+constexpr long k_contact_steps = 2000;
+
 struct ContactScene {
+    ContactScene(const char* title, const peers::BoxPlan& box, Pose (*target)(double t))
+        : name(title)
+        , plan(box) {
+        for (long i = 0; i < k_contact_steps; ++i)
+            goal.push_back(target(k_contact_step * static_cast<double>(i)));
+    }
     const char* name;
     peers::BoxPlan plan;
-    Pose (*target)(double t);
+    /// Where the hand wants the box, step by step: known before, so that nobody's time has its sines in it.
+    std::vector<Pose> goal;
 };
 
 peers::BoxPlan box_plan() {
@@ -256,10 +265,10 @@ peers::BoxPlan box_plan() {
 }
 
 ContactScene peg() {
-    ContactScene s{"peg in a hole, 100 um clearance, 500 Hz", box_plan(), [](double t) {
+    ContactScene s("peg in a hole, 100 um clearance, 500 Hz", box_plan(), [](double t) {
                        return Pose(1e-3 * std::sin(20.0 * t), -0.05 + 0.03 * std::cos(3.0 * t),
                                    0.01 * std::sin(13.0 * t));
-                   }};
+                   });
     s.plan.start[1] = -0.02;
     constexpr double k_half_wall = 0.05;
     for (const double side : {1.0, -1.0})
@@ -269,10 +278,10 @@ ContactScene peg() {
 }
 
 ContactScene wall() {
-    ContactScene s{"struck and pressed wall, 500 Hz", box_plan(), [](double t) {
+    ContactScene s("struck and pressed wall, 500 Hz", box_plan(), [](double t) {
                        return Pose(0.01 * std::sin(3.0 * t), k_half_y - 0.004 + 0.014 * std::cos(6.0 * t),
                                    0.0);
-                   }};
+                   });
     s.plan.start[1] = k_half_y + 0.01;
     s.plan.fixed.push_back({0.0, -0.05, 0.2, 0.05});
     return s;
@@ -302,7 +311,7 @@ struct Led {
     void go() {
         double velocity[3];
         box->state(pose.data(), velocity);
-        goal = scene.target(k_contact_step * static_cast<double>(count++));
+        const Pose& goal = scene.goal[count++];
         const Vec3 stiffness(1000.0, 1000.0, 1.0);
         const Vec3 damping(20.0, 20.0, 0.01);
         const Vec3 force = stiffness.cwiseProduct(goal - pose) -
@@ -312,13 +321,11 @@ struct Led {
     const ContactScene& scene;
     std::unique_ptr<peers::BoxPeer> box;
     Pose pose{0.0, 0.0, 0.0};
-    Pose goal{0.0, 0.0, 0.0};
-    long count{0};
+    std::size_t count{0};
 };
 
 void write_contact(std::ofstream& csv, bool quick) {
     csv << "scene,way,setup,deepest_m,behind_hand_m,ns_per_step,ns_low,ns_high\n";
-    constexpr long k_steps = 2000;
     const int repeats = quick ? 3 : k_repeats;
     const ContactScene scenes[] = {peg(), wall()};
     for (const ContactScene& scene : scenes)
@@ -331,18 +338,19 @@ void write_contact(std::ofstream& csv, bool quick) {
             Led led(scene, way);
             double deepest = 0.0;
             double behind = 0.0;
-            for (long i = 0; i < k_steps; ++i) {
+            for (long i = 0; i < k_contact_steps; ++i) {
                 led.go();
+                const Pose& goal = scene.goal[static_cast<std::size_t>(i)];
                 for (const peers::FixedBox& box : scene.plan.fixed)
                     deepest = std::max(deepest, overlap(led.pose, box));
                 // nothing holds it back along the hole, or along the wall
                 const bool hole = scene.plan.fixed.size() > 1;
                 behind = std::max(behind,
-                                  std::abs(hole ? led.pose.y() - led.goal.y() : led.pose.x() - led.goal.x()));
+                                  std::abs(hole ? led.pose.y() - goal.y() : led.pose.x() - goal.x()));
             }
             std::unique_ptr<Led> timed;
             const sweep::Spread ns = sweep::time_calls([&] { timed = std::make_unique<Led>(scene, way); },
-                                                       [&] { timed->go(); }, k_steps, repeats);
+                                                       [&] { timed->go(); }, k_contact_steps, repeats);
             csv << quote(way.setup) << ',' << number(deepest) << ',' << number(behind) << ','
                 << number(ns.median) << ',' << number(ns.low) << ',' << number(ns.high) << '\n';
             std::fprintf(stderr, "contact: %s, %s\n", scene.name, way.name.c_str());
