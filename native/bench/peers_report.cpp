@@ -266,9 +266,8 @@ peers::BoxPlan box_plan() {
 
 ContactScene peg() {
     ContactScene s("peg in a hole, 100 um clearance, 500 Hz", box_plan(), [](double t) {
-                       return Pose(1e-3 * std::sin(20.0 * t), -0.05 + 0.03 * std::cos(3.0 * t),
-                                   0.01 * std::sin(13.0 * t));
-                   });
+        return Pose(1e-3 * std::sin(20.0 * t), -0.05 + 0.03 * std::cos(3.0 * t), 0.01 * std::sin(13.0 * t));
+    });
     s.plan.start[1] = -0.02;
     constexpr double k_half_wall = 0.05;
     for (const double side : {1.0, -1.0})
@@ -279,9 +278,8 @@ ContactScene peg() {
 
 ContactScene wall() {
     ContactScene s("struck and pressed wall, 500 Hz", box_plan(), [](double t) {
-                       return Pose(0.01 * std::sin(3.0 * t), k_half_y - 0.004 + 0.014 * std::cos(6.0 * t),
-                                   0.0);
-                   });
+        return Pose(0.01 * std::sin(3.0 * t), k_half_y - 0.004 + 0.014 * std::cos(6.0 * t), 0.0);
+    });
     s.plan.start[1] = k_half_y + 0.01;
     s.plan.fixed.push_back({0.0, -0.05, 0.2, 0.05});
     return s;
@@ -345,8 +343,7 @@ void write_contact(std::ofstream& csv, bool quick) {
                     deepest = std::max(deepest, overlap(led.pose, box));
                 // nothing holds it back along the hole, or along the wall
                 const bool hole = scene.plan.fixed.size() > 1;
-                behind = std::max(behind,
-                                  std::abs(hole ? led.pose.y() - goal.y() : led.pose.x() - goal.x()));
+                behind = std::max(behind, std::abs(hole ? led.pose.y() - goal.y() : led.pose.x() - goal.x()));
             }
             std::unique_ptr<Led> timed;
             const sweep::Spread ns = sweep::time_calls([&] { timed = std::make_unique<Led>(scene, way); },
