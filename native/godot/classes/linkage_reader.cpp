@@ -47,7 +47,7 @@ double read_finite(DictionaryReader& r, const char* key, Problems& problems) {
 
 // the same for three numbers
 Vec3 read_finite_vector(DictionaryReader& r, const char* key, Problems& problems) {
-    const Vec3 given = r.vec3(key, Vec3::Zero());
+    Vec3 given = r.vec3(key, Vec3::Zero());
     if (given.allFinite())
         return given;
     problems.add(r.place() + key + " is (" + std::to_string(given.x()) + ", " + std::to_string(given.y()) +
