@@ -24,7 +24,7 @@ Outcome run(ContactMode contact, double tool, double gain) {
     return shared::outcome_of(o);
 }
 
-void write_table(std::ostream& out) {
+void write_settling(std::ostream& out) {
     out << "| tool kg | coupling N/m | contact | settles s | swing N | swing of the handle µm | energy "
            "created mJ |\n"
            "|---|---|---|---|---|---|---|\n"
@@ -48,7 +48,7 @@ void write_table(std::ostream& out) {
 } // namespace
 
 TEST_CASE("experiment 1 tells the contact models apart for a heavy tool, and not for a soft coupling") {
-    write_doc_table("experiment1_settling", write_table);
+    write_doc_table("experiment1_settling", write_settling);
     const Outcome penalty = run(ContactMode::penalty, 1.0, 1.0);
     const Outcome impulse = run(ContactMode::penalty_impulse, 1.0, 1.0);
     CHECK(penalty.settling < 0.0);

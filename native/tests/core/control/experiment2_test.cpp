@@ -81,7 +81,7 @@ void write_row(std::ostream& out, const char* form, Experiment2Options o) {
         << std::setprecision(1) << r.peak * 1e6 << " | " << r.mean * 1e6 << " | " << r.motion * 1e6 << " |\n";
 }
 
-void write_table(std::ostream& out) {
+void write_devices(std::ostream& out) {
     out << "| swing Hz | hand force | known by | obstacles | mass assumed / true | error provided for | "
            "friction N s/m | coupling N/m | hidden | peak µm | RMS µm | motion error RMS µm |\n"
            "|---|---|---|---|---|---|---|---|---|---|---|---|\n"
@@ -111,7 +111,7 @@ void write_table(std::ostream& out) {
 TEST_SUITE("experiment 2") {
     TEST_CASE("device known exactly, swift motion: the handle follows within 0.15 mm, the linkage moves as "
               "without a device within 0.5 mm") {
-        write_doc_table("experiment2_devices", write_table);
+        write_doc_table("experiment2_devices", write_devices);
         if (const char* folder = std::getenv("HAPTICS_EXPERIMENT2")) {
             write_run(std::string(folder) + "/free.csv", observed({}, 1.0));
             Experiment2Options touching = observed({}, 1.0);
