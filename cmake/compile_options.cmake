@@ -61,15 +61,12 @@ if(HAPTICS_SANITIZE)
         # gcc's own manual: with sanitizers its flow analysis warns of what is not so; the plain builds stop at it
         target_compile_options(haptics_options INTERFACE -Wno-maybe-uninitialized)
     endif()
-endif()
-
-# For the two largest rooms: each of these checks asks at every access, and together they double the compile time, for which CI
-# has no room. The address checks stop most of what they look for; a misaligned access that the processor bears is not seen.
-function(haptics_no_checks_of_every_access target)
     if(HAPTICS_SANITIZE MATCHES "address.*undefined")
-        target_compile_options(${target} PRIVATE -fno-sanitize=alignment,null,object-size,pointer-overflow)
+        # Each of these asks at every access and together they double the compile time, for which CI has no room. The address
+        # checks stop most of what they look for; a misaligned access that the processor bears is not seen.
+        target_compile_options(haptics_options INTERFACE -fno-sanitize=alignment,null,object-size,pointer-overflow,vptr)
     endif()
-endfunction()
+endif()
 
 # C is for what runs without an operating system (firmware/) and for what has to stand between a program and the C library
 add_library(haptics_c_options INTERFACE)
