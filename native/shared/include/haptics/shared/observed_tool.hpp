@@ -48,6 +48,7 @@ struct ObservedToolOptions {
     bool observer{true};
     bool passivity{false};
     double noise{0.05};
+    int velocity_window{0};
     /// Distance from tool to wall at the start, m, stiffness of the wall, N/m, its damping, N s/m.
     double distance{0.005};
     double wall{15000.0};
@@ -85,6 +86,7 @@ struct ObservedTool {
         s.observer.delay = o.delay_steps * s.step;
         s.observer.noise = o.noise;
         s.passivity_control = o.passivity;
+        s.velocity_window = o.velocity_window;
         SafetyLimits limits;
         limits.max_force = 30.0;
         OutputGate gate(limits, device->kinematics());
